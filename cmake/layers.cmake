@@ -1,0 +1,27 @@
+add_library(silt_flags INTERFACE)
+target_compile_options(silt_flags INTERFACE -Wall -Wextra -Wshadow -Wpedantic -fno-math-errno
+                       $<$<CONFIG:Release>:-O3> $<$<BOOL:${SILT_WERROR}>:-Werror>)
+if(SILT_SANITIZE)
+  target_compile_options(silt_flags INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
+  target_link_options(silt_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# silt_layer(NAME [layers it may use...]): src/NAME/**.cpp as the static library silt_NAME.
+# Files named *_avx2.cpp and *_avx512.cpp are compiled for that instruction set; the code chooses among them at run time.
+function(silt_layer name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/${name}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "src/app/main\\.cpp$")
+  add_library(silt_${name} STATIC ${sources})
+  target_include_directories(silt_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
+  target_link_libraries(silt_${name} PUBLIC silt_dependencies PRIVATE silt_flags)
+  foreach(used ${ARGN})
+    target_link_libraries(silt_${name} PUBLIC silt_${used})
+  endforeach()
+  foreach(source ${sources})
+    if(source MATCHES "_avx2\\.cpp$")
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-march=x86-64-v3")
+    elseif(source MATCHES "_avx512\\.cpp$")
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-march=x86-64-v4;-mprefer-vector-width=512")
+    endif()
+  endforeach()
+endfunction()

@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+
+#include "base/vector.hpp"
+
+namespace mu {
+class Parser;
+}
+
+namespace silt {
+
+/// A formula in x, y, z (m) and t (s), evaluated by muParser: numbers, + - * / ^, sin cos exp sqrt min max if pi ...
+/// A malformed formula throws UserError naming the option it came from.
+class Expression {
+ public:
+  Expression(const std::string& option, const std::string& text);
+  ~Expression();
+  Expression(Expression&&) noexcept;
+  Expression& operator=(Expression&&) noexcept;
+  double operator()(const Vec3& x, double t) const;
+  /// True when the value depends on none of x, y, z, t.
+  bool constant() const { return constant_; }
+
+ private:
+  std::unique_ptr<mu::Parser> parser_;
+  std::unique_ptr<std::array<double, 4>> variables_;
+  bool constant_ = false;
+};
+
+/// Three formulas separated by commas: "0, 0, 0.6*min(t/0.1, 1)".
+class VectorExpression {
+ public:
+  VectorExpression(const std::string& option, const std::string& text);
+  Vec3 operator()(const Vec3& x, double t) const;
+  bool constant() const;
+
+ private:
+  std::array<std::unique_ptr<Expression>, 3> components_;
+};
+
+}  // namespace silt

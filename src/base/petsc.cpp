@@ -1,0 +1,64 @@
+#include "base/petsc.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+namespace silt {
+namespace {
+
+std::string last_message;
+
+PetscErrorCode keep_message(MPI_Comm, int line, const char* function, const char* file, PetscErrorCode code,
+                            PetscErrorType type, const char* message, void*) {
+  if (type == PETSC_ERROR_INITIAL) last_message = fmt::format("{} ({}:{} {})", message ? message : "", file, line, function);
+  return code;
+}
+
+void start(int* argc, char*** argv) {
+  // PETSc calls BLAS on small blocks from every rank: more than one thread each only loses time.
+  setenv("OPENBLAS_NUM_THREADS", "1", 0);
+  setenv("OMP_NUM_THREADS", "1", 0);
+  PetscInitialize(argc, argv, nullptr, nullptr);
+  PetscPushErrorHandler(keep_message, nullptr);
+}
+
+template <class T>
+T reduce(T value, MPI_Datatype type, MPI_Op operation) {
+  T result = value;
+  MPI_Allreduce(&value, &result, 1, type, operation, PETSC_COMM_WORLD);
+  return result;
+}
+
+}  // namespace
+
+PetscFailure::PetscFailure(PetscErrorCode error, const char* call, const char* file, int line)
+    : std::runtime_error(fmt::format("PETSc error {} in {} ({}:{}): {}", static_cast<int>(error), call, file, line, last_message)),
+      code(error) {}
+
+PetscSession::PetscSession() { start(nullptr, nullptr); }
+PetscSession::PetscSession(int argc, char** argv) { start(&argc, &argv); }
+PetscSession::~PetscSession() {
+  PetscPopErrorHandler();
+  PetscFinalize();
+}
+
+int mpi_rank() {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  return rank;
+}
+
+int mpi_size() {
+  int size = 1;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  return size;
+}
+
+double mpi_sum(double value) { return reduce(value, MPI_DOUBLE, MPI_SUM); }
+long long mpi_sum(long long value) { return reduce(value, MPI_LONG_LONG, MPI_SUM); }
+double mpi_min(double value) { return reduce(value, MPI_DOUBLE, MPI_MIN); }
+double mpi_max(double value) { return reduce(value, MPI_DOUBLE, MPI_MAX); }
+bool mpi_any(bool value) { return reduce(static_cast<int>(value), MPI_INT, MPI_MAX) != 0; }
+
+}  // namespace silt

@@ -1,0 +1,86 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/mesh.hpp"
+#include "base/options.hpp"
+#include "base/vector.hpp"
+
+namespace silt {
+
+/// What the fluid does to one particle during a fluid step, and what the particle took; travels with the particle.
+/// Drag is integrated exactly in the substeps: m dv/dt = F_other + exchange (fluid_velocity - v).
+struct FluidAction {
+  double velocity[3] = {0, 0, 0};  ///< m/s, fluid velocity at the particle (u^n)
+  double exchange = 0;             ///< kg/s, drag coefficient k_p, constant over the fluid step
+  double force[3] = {0, 0, 0};     ///< N, every other fluid force, constant over the fluid step (pressure gradient, buoyancy, owed impulse)
+  double held = 0;                 ///< 0: free, 1: held by contacts (coupling keeps it here between steps)
+  double impulse[3] = {0, 0, 0};   ///< N s, drag impulse received since the last reset; the engine adds
+  double start_velocity[3] = {0, 0, 0};  ///< m/s, velocity at the start of the fluid step; set by the coupling
+};
+
+/// Counts of one advance(), for the progress line and the diagnostics (global).
+struct ParticleStep {
+  int substeps = 0, rebuilds = 0;
+  long long contacts = 0;      ///< touching pairs, walls included
+  long long removed = 0;       ///< particles that left through an outlet since the start
+  double largest_overlap = 0;  ///< as a share of the radius
+};
+
+/// A particle to be created.
+struct Seed {
+  Vec3 position = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero();
+  double radius = 0;  ///< m
+  int material = 0;   ///< index into Materials
+};
+
+/// The soft-sphere particles of this rank: those whose centre lies in a local cell.
+/// Indices are valid until the next advance() or add(); `id` is for ever.
+class Particles {
+ public:
+  /// Reads materials, contact laws, walls, insertions; creates and settles the particles. Collective.
+  Particles(const Mesh& mesh, Options& options, const Vec3& gravity);
+  ~Particles();
+
+  int owned() const;
+  long long total() const;  ///< on all ranks
+
+  std::int64_t id(int i) const;
+  Map<const Vec3> position(int i) const;
+  Map<const Vec3> velocity(int i) const;
+  Map<const Vec3> spin(int i) const;
+  double radius(int i) const;
+  double mass(int i) const;
+  double volume(int i) const;
+  int material(int i) const;
+  int cell(int i) const;  ///< local cell that contains the centre
+  FluidAction& fluid_action(int i);
+
+  /// Adds an impulse to particle i at once (settling with the fluid).
+  void kick(int i, const Vec3& impulse);
+
+  /// Moves all particles by dt (in substeps not longer than time_step()). Collective.
+  ParticleStep advance(double time, double dt);
+  double time_step() const;
+  /// "Hertz contact time, 20 steps a contact": the bound that limits time_step().
+  std::string time_step_reason() const;
+
+  /// Global sums. Collective.
+  Vec3 momentum() const;
+  double kinetic_energy() const;
+  double rotational_energy() const;
+  double total_mass() const;
+  /// N s given to the particles by gravity, by walls and by fluid since the last call; momentum change = their sum. Collective.
+  struct Impulses {
+    Vec3 gravity = Vec3::Zero(), walls = Vec3::Zero(), drag = Vec3::Zero(), fluid_force = Vec3::Zero(), kicks = Vec3::Zero(), added = Vec3::Zero(), removed = Vec3::Zero();
+  };
+  Impulses take_impulses();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace silt
