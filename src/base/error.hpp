@@ -9,7 +9,8 @@ struct UserError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The run cannot go on (non-finite field, lost particle, step below the least, ledger out of balance, disk full): exit code 1.
+/// The run cannot go on (non-finite field, lost particle, step below the least, ledger out of balance, disk full): exit
+/// code 1.
 struct RunError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -31,8 +31,9 @@ struct BoundaryFacet {
 /// The distributed mesh: a DMPlex without overlap, and the arrays that element and particle loops run over.
 ///
 /// Nodes are the vertices. Local nodes 0..owned_nodes-1 are owned by this rank, the rest belong to other ranks; node i
-/// owned here has the global number first_node + i. A rank may own no cell and no node. Coordinates have three components also in 2D (z = 0).
-/// On a periodic mesh a node stands for several places: geometry is per cell (cell_coordinates), node_coordinates holds one of them.
+/// owned here has the global number first_node + i. A rank may own no cell and no node. Coordinates have three
+/// components also in 2D (z = 0). On a periodic mesh a node stands for several places: geometry is per cell
+/// (cell_coordinates), node_coordinates holds one of them.
 class Mesh {
  public:
   /// Creates, distributes (PTScotch) and checks the mesh; throws UserError for a bad file or option. Collective.
@@ -49,27 +50,30 @@ class Mesh {
   long long total_cells = 0;             ///< on all ranks
   std::vector<int> cell_nodes;           ///< [cells][nodes_per_cell] local nodes
   std::vector<double> cell_coordinates;  ///< [cells][nodes_per_cell][3] m
-  std::vector<int> cell_neighbours;      ///< [cells][facets_per_cell] local cell; -1 - b: boundary b; remote_cell: on another rank
-  std::vector<int> facet_ranks;          ///< [cells][facets_per_cell] rank on the other side of a remote facet, else -1
+  std::vector<int>
+      cell_neighbours;  ///< [cells][facets_per_cell] local cell; -1 - b: boundary b; remote_cell: on another rank
+  std::vector<int> facet_ranks;  ///< [cells][facets_per_cell] rank on the other side of a remote facet, else -1
   static constexpr int remote_cell = -1000000;
-  std::vector<double> cell_volumes;      ///< [cells] m3 (m2 in 2D)
+  std::vector<double> cell_volumes;  ///< [cells] m3 (m2 in 2D)
 
   int nodes = 0, owned_nodes = 0;
   long long first_node = 0, total_nodes = 0;
   std::vector<long long> node_global;    ///< [nodes] global number
   std::vector<double> node_coordinates;  ///< [nodes][3] m
 
-  std::vector<std::string> boundaries;   ///< names, the same on every rank: x_min ... for boxes, Gmsh's physical names for files
-  std::vector<BoundaryFacet> facets;     ///< boundary facets of local cells
+  std::vector<std::string>
+      boundaries;  ///< names, the same on every rank: x_min ... for boxes, Gmsh's physical names for files
+  std::vector<BoundaryFacet> facets;  ///< boundary facets of local cells
 
-  Vec3 lower, upper;                     ///< bounding box of the whole mesh
+  Vec3 lower, upper;  ///< bounding box of the whole mesh
   std::array<bool, 3> periodic{false, false, false};
   double smallest_edge = 0, volume = 0;  ///< over all ranks
 
   /// Corner coordinates of a boundary facet, facet_nodes(cell) of them, ordered outwards.
   std::array<Vec3, 4> facet_corners(const BoundaryFacet& facet) const;
 
-  /// Adds up the contributions of all ranks to shared nodes; every rank then holds the sum. values[nodes][components]. Collective.
+  /// Adds up the contributions of all ranks to shared nodes; every rank then holds the sum. values[nodes][components].
+  /// Collective.
   void sum_shared(double* values, int components) const;
   /// Copies the owner's value to the other ranks' copies. Collective.
   void copy_from_owner(double* values, int components) const;

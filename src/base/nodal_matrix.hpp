@@ -15,16 +15,18 @@ struct NodalGraph {
   std::vector<int> cell_entry;  ///< [cells][nodes_per_cell][nodes_per_cell] place of a cell matrix entry
 };
 
-/// A scalar matrix over the mesh nodes, kept as this rank's cells contributed it (sub-assembled): the true matrix is the sum over ranks.
-/// Cell loops add straight into `values` through NodalGraph::cell_entry; apply() sums shared rows once.
+/// A scalar matrix over the mesh nodes, kept as this rank's cells contributed it (sub-assembled): the true matrix is
+/// the sum over ranks. Cell loops add straight into `values` through NodalGraph::cell_entry; apply() sums shared rows
+/// once.
 class NodalMatrix {
  public:
-  explicit NodalMatrix(const NodalGraph& graph) : graph(graph), values(graph.column.size(), 0.0) {}
+  explicit NodalMatrix(const NodalGraph& nodes) : graph(nodes), values(nodes.column.size(), 0.0) {}
   const NodalGraph& graph;
   std::vector<double> values;
 
   void zero();
-  /// y = A x for `components` interlaced vectors at once (1 to 4 unrolled); x consistent on shared nodes, y too. Collective.
+  /// y = A x for `components` interlaced vectors at once (1 to 4 unrolled); x consistent on shared nodes, y too.
+  /// Collective.
   void apply(const double* x, double* y, int components) const;
   /// The diagonal, summed over ranks. Collective.
   std::vector<double> diagonal() const;

@@ -27,14 +27,14 @@ inline constexpr Range at_least(double low) { return {low, infinity, false, true
 
 /// What was declared of one option: drives `-help`, docs/options.md, the nearest-name search and the record of the run.
 struct OptionEntry {
-  std::string name;          ///< full name without the dash, `<name>` where the user chooses a word
-  std::string type;          ///< number, integer, yes/no, word, text, vector, list, expression
-  std::string unit;          ///< SI, "-" when it has none
-  std::string fallback;      ///< default as text
-  std::string range;         ///< allowed values as text, empty when any
-  std::string help;          ///< one sentence
-  std::string value;         ///< value in this run
-  bool given = false;        ///< the user gave it
+  std::string name;      ///< full name without the dash, `<name>` where the user chooses a word
+  std::string type;      ///< number, integer, yes/no, word, text, vector, list, expression
+  std::string unit;      ///< SI, "-" when it has none
+  std::string fallback;  ///< default as text
+  std::string range;     ///< allowed values as text, empty when any
+  std::string help;      ///< one sentence
+  std::string value;     ///< value in this run
+  bool given = false;    ///< the user gave it
 };
 
 class OptionGroup;
@@ -102,7 +102,8 @@ class OptionGroup {
   /// One of a list of words.
   void operator()(const char* name, std::string& value, const std::vector<std::string>& allowed, const char* help);
   void operator()(const char* name, Vec3& value, const char* unit, const char* help);
-  void operator()(const char* name, std::optional<double>& value, const char* unit, const char* help, Range range = any);
+  void operator()(const char* name, std::optional<double>& value, const char* unit, const char* help,
+                  Range range = any);
   void operator()(const char* name, std::optional<Vec3>& value, const char* unit, const char* help);
   void operator()(const char* name, std::vector<double>& value, const char* unit, const char* help, Range range = any);
   void operator()(const char* name, std::vector<int>& value, const char* unit, const char* help, Range range = any);

@@ -11,7 +11,8 @@ std::string last_message;
 
 PetscErrorCode keep_message(MPI_Comm, int line, const char* function, const char* file, PetscErrorCode code,
                             PetscErrorType type, const char* message, void*) {
-  if (type == PETSC_ERROR_INITIAL) last_message = fmt::format("{} ({}:{} {})", message ? message : "", file, line, function);
+  if (type == PETSC_ERROR_INITIAL)
+    last_message = fmt::format("{} ({}:{} {})", message ? message : "", file, line, function);
   return code;
 }
 
@@ -33,7 +34,8 @@ T reduce(T value, MPI_Datatype type, MPI_Op operation) {
 }  // namespace
 
 PetscFailure::PetscFailure(PetscErrorCode error, const char* call, const char* file, int line)
-    : std::runtime_error(fmt::format("PETSc error {} in {} ({}:{}): {}", static_cast<int>(error), call, file, line, last_message)),
+    : std::runtime_error(
+          fmt::format("PETSc error {} in {} ({}:{}): {}", static_cast<int>(error), call, file, line, last_message)),
       code(error) {}
 
 PetscSession::PetscSession() { start(nullptr, nullptr); }

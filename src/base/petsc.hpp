@@ -18,9 +18,9 @@ struct PetscFailure : std::runtime_error {
 };
 
 /// Checks a PETSc call in our own code, where exceptions may fly. Inside PETSc callbacks use PetscCall instead.
-#define SILT_PETSC(...)                                                            \
-  do {                                                                             \
-    PetscErrorCode silt_code_ = (__VA_ARGS__);                                     \
+#define SILT_PETSC(...)                                                                       \
+  do {                                                                                        \
+    PetscErrorCode silt_code_ = (__VA_ARGS__);                                                \
     if (silt_code_) throw ::silt::PetscFailure(silt_code_, #__VA_ARGS__, __FILE__, __LINE__); \
   } while (0)
 

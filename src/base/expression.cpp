@@ -1,0 +1,58 @@
+#include "base/expression.hpp"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include "base/error.hpp"
+
+namespace silt {
+
+Expression::Expression(const std::string& option, const std::string& text)
+    : parser_(std::make_unique<mu::Parser>()), variables_(std::make_unique<std::array<double, 4>>()) {
+  try {
+    const char* names[4] = {"x", "y", "z", "t"};
+    for (int k = 0; k < 4; ++k) parser_->DefineVar(names[k], variables_->data() + k);
+    parser_->DefineConst("pi", 3.14159265358979323846);
+    parser_->SetExpr(text);
+    parser_->Eval();
+    constant_ = parser_->GetUsedVar().empty();
+  } catch (const mu::Parser::exception_type& e) {
+    throw UserError(fmt::format("option -{}: '{}' is not a formula in x, y, z, t: {}", option, text, e.GetMsg()));
+  }
+}
+
+Expression::~Expression() = default;
+Expression::Expression(Expression&&) noexcept = default;
+Expression& Expression::operator=(Expression&&) noexcept = default;
+
+double Expression::operator()(const Vec3& x, double t) const {
+  *variables_ = {x[0], x[1], x[2], t};
+  return parser_->Eval();
+}
+
+VectorExpression::VectorExpression(const std::string& option, const std::string& text) {
+  std::array<std::string, 3> parts;
+  size_t part = 0;
+  int depth = 0;
+  for (char c : text) {
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (c == ',' && depth == 0) {
+      if (++part > 2) break;
+    } else if (c != '[' && c != ']') {
+      parts[part] += c;
+    }
+  }
+  if (part != 2)
+    throw UserError(fmt::format("option -{}: '{}' must be three formulas separated by commas", option, text));
+  for (int d = 0; d < 3; ++d) components_[d] = std::make_unique<Expression>(option, parts[d]);
+}
+
+Vec3 VectorExpression::operator()(const Vec3& x, double t) const {
+  return {(*components_[0])(x, t), (*components_[1])(x, t), (*components_[2])(x, t)};
+}
+
+bool VectorExpression::constant() const {
+  return components_[0]->constant() && components_[1]->constant() && components_[2]->constant();
+}
+
+}  // namespace silt

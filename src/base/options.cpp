@@ -1,0 +1,386 @@
+#include "base/options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <petscsys.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+#include <set>
+
+#include "base/error.hpp"
+
+namespace silt {
+namespace {
+
+std::string number_text(double value) { return fmt::format("{:g}", value); }
+
+bool is_number_start(std::string_view text) {
+  return text.size() > 1 && (std::isdigit(static_cast<unsigned char>(text[1])) || text[1] == '.');
+}
+
+/// Splits at commas outside parentheses, so that expressions may contain max(a, b); trims blanks.
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts;
+  std::string part;
+  int depth = 0;
+  for (char c : text) {
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (c == ',' && depth == 0) {
+      parts.push_back(part);
+      part.clear();
+    } else {
+      part += c;
+    }
+  }
+  parts.push_back(part);
+  for (auto& p : parts) {
+    const auto first = p.find_first_not_of(" \t[]"), last = p.find_last_not_of(" \t[]");
+    p = first == std::string::npos ? "" : p.substr(first, last - first + 1);
+  }
+  if (parts.size() == 1 && parts[0].empty()) parts.clear();
+  return parts;
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// PETSc's own option families: a name under one of them that no solver has used yet is not an error of the user
+/// (solvers inside preconditioners are created late, if at all).
+bool belongs_to_petsc(const std::string& name) {
+  static const std::vector<std::string> starts = {
+      "log_", "dm_plex_", "options_",          "malloc",  "on_error", "info", "memory_", "start_in_debugger",
+      "mat_", "vec_",     "petscpartitioner_", "fp_trap", "viewer_"};
+  static const std::vector<std::string> middles = {"_ksp_", "_pc_", "_snes_", "_mg_", "_sub_", "_fieldsplit_", "_mat_"};
+  for (const auto& start : starts)
+    if (name.rfind(start, 0) == 0) return true;
+  for (const auto& middle : middles)
+    if (name.find(middle) != std::string::npos) return true;
+  return false;
+}
+
+void flatten(const YAML::Node& node, const std::string& prefix, const std::string& file, Options& options) {
+  const std::string origin = fmt::format("{}:{}", file, node.Mark().line + 1);
+  if (node.IsMap()) {
+    for (const auto& pair : node) {
+      const auto key = pair.first.as<std::string>();
+      flatten(pair.second, prefix.empty() ? key : prefix + "_" + key, file, options);
+    }
+  } else if (node.IsSequence()) {
+    std::vector<std::string> items;
+    for (const auto& item : node) {
+      if (!item.IsScalar()) throw UserError(fmt::format("{}: '{}' must be a list of plain values", origin, prefix));
+      items.push_back(item.as<std::string>());
+    }
+    options.set(prefix, fmt::format("{}", fmt::join(items, ",")), origin);
+  } else if (node.IsScalar()) {
+    options.set(prefix, node.as<std::string>(), origin);
+  } else {
+    throw UserError(fmt::format("{}: '{}' has no value", origin, prefix));
+  }
+}
+
+void read_yaml(const std::string& file, Options& options) {
+  if (!std::filesystem::is_regular_file(file)) throw UserError(fmt::format("options file '{}' does not exist", file));
+  try {
+    const YAML::Node root = YAML::LoadFile(file);
+    if (root.IsNull()) return;
+    if (!root.IsMap()) throw UserError(fmt::format("{}: an options file is a map of names and values", file));
+    flatten(root, "", file, options);
+  } catch (const YAML::Exception& e) {
+    throw UserError(fmt::format("{}:{}: not valid YAML: {}", file, e.mark.line + 1, e.msg));
+  }
+}
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string Range::text() const {
+  const bool below = low <= -infinity, above = high >= infinity;
+  if (below && above) return "";
+  if (above) return fmt::format("{} {}", low_open ? ">" : ">=", number_text(low));
+  if (below) return fmt::format("{} {}", high_open ? "<" : "<=", number_text(high));
+  return fmt::format("{}{}, {}{}", low_open ? "(" : "[", number_text(low), number_text(high), high_open ? ")" : "]");
+}
+
+Options Options::from_arguments(const std::vector<std::string>& arguments) {
+  Options options;
+  std::vector<std::pair<std::string, std::string>> command_line;
+  for (size_t k = 0; k < arguments.size(); ++k) {
+    const std::string& word = arguments[k];
+    if (word.size() > 1 && word[0] == '-' && !is_number_start(word)) {
+      const std::string name = word.substr(word[1] == '-' ? 2 : 1);
+      const bool has_value = k + 1 < arguments.size() && (arguments[k + 1].empty() || arguments[k + 1][0] != '-' ||
+                                                          is_number_start(arguments[k + 1]));
+      static const std::set<std::string> switches = {"check", "help", "version", "models", "options_page", "log_view"};
+      const bool is_switch = switches.count(name) > 0;
+      command_line.emplace_back(name, has_value && !is_switch ? arguments[++k] : "");
+    } else {
+      read_yaml(word, options);
+    }
+  }
+  for (const auto& [name, value] : command_line) options.set(name, value, "command line");
+  return options;
+}
+
+void Options::set(const std::string& name, const std::string& value, const std::string& origin) {
+  given_[lower_case(name)] = {value, origin, false};
+}
+
+bool Options::given(const std::string& name) const { return given_.count(name) > 0; }
+
+std::optional<std::string> Options::find(const std::string& name) {
+  const auto it = given_.find(name);
+  if (it == given_.end()) return std::nullopt;
+  it->second.used = true;
+  return it->second.value;
+}
+
+std::string Options::origin(const std::string& name) const {
+  const auto it = given_.find(name);
+  return it == given_.end() ? "" : it->second.origin;
+}
+
+std::vector<std::string> Options::names(const std::string& prefix, const std::vector<std::string>& properties) const {
+  std::set<std::string> found;
+  const std::string start = prefix + "_";
+  for (const auto& [name, given] : given_) {
+    if (name.rfind(start, 0) != 0) continue;
+    const std::string rest = name.substr(start.size());
+    std::string best;  // the longest matching property: "a_velocity" must not be taken for property "y"
+    for (const auto& property : properties)
+      if (rest.size() > property.size() + 1 &&
+          rest.compare(rest.size() - property.size() - 1, std::string::npos, "_" + property) == 0 &&
+          property.size() > best.size())
+        best = property;
+    if (best.empty()) {
+      const auto split = rest.find('_');
+      const std::string word = split == std::string::npos ? "" : rest.substr(split + 1);
+      const std::string hint = nearest(word, properties);
+      throw UserError(fmt::format(
+          "unknown option -{} ({}){}", name, given.origin,
+          hint.empty() ? fmt::format(": -{}_<name>_ must be followed by one of {}", prefix, fmt::join(properties, ", "))
+                       : fmt::format(", did you mean -{}_{}_{}?", prefix, rest.substr(0, split), hint)));
+    }
+    found.insert(rest.substr(0, rest.size() - best.size() - 1));
+  }
+  return {found.begin(), found.end()};
+}
+
+void Options::insert_into_petsc() const {
+  for (const auto& [name, given] : given_)
+    PetscOptionsSetValue(nullptr, ("-" + name).c_str(), given.value.empty() ? nullptr : given.value.c_str());
+}
+
+void Options::refuse_unknown() const {
+  std::vector<std::string> known;
+  for (const auto& entry : entries_) known.push_back(entry.name);
+  for (const auto& [name, given] : given_) {
+    if (given.used || belongs_to_petsc(name)) continue;
+    PetscBool used = PETSC_FALSE;
+    PetscOptionsUsed(nullptr, ("-" + name).c_str(), &used);
+    if (used) continue;
+    const bool declared = std::find(known.begin(), known.end(), name) != known.end();
+    if (declared) continue;
+    const std::string hint = nearest(name, known);
+    throw UserError(fmt::format("unknown option -{} ({}){}", name, given.origin,
+                                hint.empty() ? "; -help lists all" : fmt::format(", did you mean -{}?", hint)));
+  }
+}
+
+void Options::declare(OptionEntry entry) {
+  for (auto& known : entries_)
+    if (known.name == entry.name) {
+      known = std::move(entry);
+      return;
+    }
+  entries_.push_back(std::move(entry));
+}
+
+std::string Options::help_text() const {
+  std::string text;
+  for (const auto& e : entries_)
+    text += fmt::format("  -{:<40} {:<10} {}{}\n", e.name, e.fallback.empty() ? "(none)" : e.fallback, e.help,
+                        e.unit.empty() || e.unit == "-"
+                            ? (e.range.empty() ? "" : fmt::format(" [{}]", e.range))
+                            : fmt::format(" [{}{}{}]", e.unit, e.range.empty() ? "" : ", ", e.range));
+  return text;
+}
+
+std::string Options::markdown() const {
+  std::string text, section;
+  for (const auto& e : entries_) {
+    const std::string head = e.name.substr(0, e.name.find('_'));
+    if (head != section) {
+      section = head;
+      text +=
+          fmt::format("\n## {}\n\n| option | default | unit | allowed | meaning |\n|---|---|---|---|---|\n", section);
+    }
+    std::string range = e.range;
+    for (size_t k = 0; (k = range.find('|', k)) != std::string::npos; k += 2) range.replace(k, 1, "\\|");
+    text += fmt::format("| `-{}` | {} | {} | {} | {} |\n", e.name, e.fallback, e.unit.empty() ? "-" : e.unit, range,
+                        e.help);
+  }
+  return text;
+}
+
+std::optional<std::string> OptionGroup::take(const char* name, const char* type, const char* unit,
+                                             const std::string& fallback, const std::string& range, const char* help) {
+  OptionEntry entry{full(name), type, unit, fallback, range, help, fallback, false};
+  auto text = options_.find(entry.name);
+  if (text) {
+    entry.given = true;
+    entry.value = *text;
+  }
+  options_.declare(std::move(entry));
+  return text;
+}
+
+void OptionGroup::refuse(const std::string& name, const std::string& text, const std::string& allowed) const {
+  throw UserError(
+      fmt::format("option -{} ({}): '{}' is not allowed; it must be {}", name, options_.origin(name), text, allowed));
+}
+
+double OptionGroup::number(const std::string& name, const std::string& text, const char* unit,
+                           const Range& range) const {
+  const std::string limits = range.text(), unit_text = std::string(unit) == "-" ? "" : fmt::format(" in {}", unit);
+  const std::string allowed = fmt::format("a number{}{}{}", unit_text, limits.empty() ? "" : " ", limits);
+  double value = 0;
+  try {
+    size_t used = 0;
+    value = std::stod(text, &used);
+    if (text.find_first_not_of(" \t", used) != std::string::npos) refuse(name, text, allowed);
+  } catch (const std::logic_error&) {
+    refuse(name, text, allowed);
+  }
+  if (!std::isfinite(value) || !range.contains(value)) refuse(name, text, allowed);
+  return value;
+}
+
+int OptionGroup::whole(const std::string& name, const std::string& text, const char* unit, const Range& range) const {
+  const double value = number(name, text, unit, range);
+  if (value != std::floor(value) || std::abs(value) > 2e9) refuse(name, text, "a whole number " + range.text());
+  return static_cast<int>(value);
+}
+
+void OptionGroup::operator()(const char* name, double& value, const char* unit, const char* help, Range range) {
+  if (auto text = take(name, "number", unit, number_text(value), range.text(), help))
+    value = number(full(name), *text, unit, range);
+}
+
+void OptionGroup::operator()(const char* name, int& value, const char* unit, const char* help, Range range) {
+  if (auto text = take(name, "integer", unit, std::to_string(value), range.text(), help))
+    value = whole(full(name), *text, unit, range);
+}
+
+void OptionGroup::operator()(const char* name, bool& value, const char* help) {
+  auto text = take(name, "yes/no", "", value ? "yes" : "no", "yes, no", help);
+  if (!text) return;
+  const std::string word = lower_case(*text);
+  if (word == "yes" || word == "true" || word == "1" || word == "on" || word.empty()) {
+    value = true;
+  } else if (word == "no" || word == "false" || word == "0" || word == "off") {
+    value = false;
+  } else {
+    refuse(full(name), *text, "yes or no");
+  }
+}
+
+void OptionGroup::operator()(const char* name, std::string& value, const char* help) {
+  if (auto text = take(name, "text", "", value, "", help)) value = *text;
+}
+
+void OptionGroup::operator()(const char* name, std::string& value, const std::vector<std::string>& allowed,
+                             const char* help) {
+  auto text = take(name, "word", "", value, fmt::format("{}", fmt::join(allowed, ", ")), help);
+  if (!text) return;
+  if (std::find(allowed.begin(), allowed.end(), *text) == allowed.end()) {
+    const std::string hint = nearest(*text, allowed);
+    refuse(full(name), *text,
+           fmt::format("one of {}{}", fmt::join(allowed, ", "),
+                       hint.empty() ? "" : fmt::format(" (did you mean {}?)", hint)));
+  }
+  value = *text;
+}
+
+void OptionGroup::operator()(const char* name, Vec3& value, const char* unit, const char* help) {
+  const std::string fallback = fmt::format("{:g},{:g},{:g}", value[0], value[1], value[2]);
+  auto text = take(name, "vector", unit, fallback, "three numbers", help);
+  if (!text) return;
+  const auto parts = split_list(*text);
+  if (parts.size() != 3) refuse(full(name), *text, fmt::format("three numbers in {}", unit));
+  for (int d = 0; d < 3; ++d) value[d] = number(full(name), parts[d], unit, any);
+}
+
+void OptionGroup::operator()(const char* name, std::optional<double>& value, const char* unit, const char* help,
+                             Range range) {
+  const std::string fallback = value ? number_text(*value) : "";
+  if (auto text = take(name, "number", unit, fallback, range.text(), help))
+    value = number(full(name), *text, unit, range);
+}
+
+void OptionGroup::operator()(const char* name, std::optional<Vec3>& value, const char* unit, const char* help) {
+  Vec3 v = value.value_or(Vec3::Zero());
+  const bool had = value.has_value();
+  const std::string fallback = had ? fmt::format("{:g},{:g},{:g}", v[0], v[1], v[2]) : "";
+  auto text = take(name, "vector", unit, fallback, "three numbers", help);
+  if (!text) return;
+  const auto parts = split_list(*text);
+  if (parts.size() != 3) refuse(full(name), *text, fmt::format("three numbers in {}", unit));
+  for (int d = 0; d < 3; ++d) v[d] = number(full(name), parts[d], unit, any);
+  value = v;
+}
+
+void OptionGroup::operator()(const char* name, std::vector<double>& value, const char* unit, const char* help,
+                             Range range) {
+  auto text = take(name, "list", unit, fmt::format("{:g}", fmt::join(value, ",")), range.text(), help);
+  if (!text) return;
+  value.clear();
+  for (const auto& part : split_list(*text)) value.push_back(number(full(name), part, unit, range));
+}
+
+void OptionGroup::operator()(const char* name, std::vector<int>& value, const char* unit, const char* help,
+                             Range range) {
+  auto text = take(name, "list", unit, fmt::format("{}", fmt::join(value, ",")), range.text(), help);
+  if (!text) return;
+  value.clear();
+  for (const auto& part : split_list(*text)) value.push_back(whole(full(name), part, unit, range));
+}
+
+void OptionGroup::operator()(const char* name, std::vector<std::string>& value, const char* help) {
+  auto text = take(name, "list", "", fmt::format("{}", fmt::join(value, ",")), "", help);
+  if (text) value = split_list(*text);
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& known) {
+  std::string best;
+  size_t best_distance = std::max<size_t>(2, word.size() / 4) + 1;
+  for (const auto& candidate : known) {
+    std::vector<size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), size_t{0});
+    for (size_t i = 1; i <= word.size(); ++i) {
+      size_t corner = row[0];
+      row[0] = i;
+      for (size_t j = 1; j <= candidate.size(); ++j) {
+        const size_t above = row[j];
+        row[j] = std::min({above + 1, row[j - 1] + 1, corner + (word[i - 1] != candidate[j - 1])});
+        corner = above;
+      }
+    }
+    if (row.back() < best_distance) {
+      best_distance = row.back();
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace silt

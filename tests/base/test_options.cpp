@@ -1,0 +1,114 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "base/error.hpp"
+#include "base/expression.hpp"
+#include "base/options.hpp"
+
+using namespace silt;
+
+namespace {
+
+struct Sample {
+  double density = 1000;
+  int count = 3;
+  bool verbose = false;
+  std::string kind = "round";
+  Vec3 velocity = Vec3::Zero();
+  std::vector<double> list;
+  std::optional<double> extra;
+  void options(OptionGroup& option) {
+    option("density", density, "kg/m3", "density", positive);
+    option("count", count, "-", "how many", at_least(1));
+    option("verbose", verbose, "talk");
+    option("kind", kind, {"round", "square"}, "shape");
+    option("velocity", velocity, "m/s", "velocity");
+    option("list", list, "m", "lengths", positive);
+    option("extra", extra, "Pa", "something else");
+  }
+};
+
+std::string refusal(const std::string& name, const std::string& value) {
+  Options options;
+  options.set(name, value);
+  Sample sample;
+  try {
+    options.read("sample", sample);
+    options.refuse_unknown();
+  } catch (const UserError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("A given option fills its member, another keeps its default") {
+  Options options;
+  options.set("sample_density", "7.8e3");
+  options.set("sample_velocity", "1, -2, 3e-1");
+  options.set("sample_list", "1,2,3");
+  options.set("sample_verbose", "yes");
+  Sample sample;
+  options.read("sample", sample);
+  CHECK(sample.density == 7800);
+  CHECK(sample.count == 3);
+  CHECK(sample.verbose);
+  CHECK(sample.velocity == Vec3(1, -2, 0.3));
+  CHECK(sample.list == std::vector<double>{1, 2, 3});
+  CHECK(!sample.extra);
+}
+
+TEST_CASE("A wrong value names option, value, unit and range") {
+  CHECK(refusal("sample_density", "-1") ==
+        "option -sample_density (command line): '-1' is not allowed; it must be a number in kg/m3 > 0");
+  CHECK(refusal("sample_density", "1.2xyz").find("1.2xyz") != std::string::npos);
+  CHECK(refusal("sample_density", "nan").find("nan") != std::string::npos);
+  CHECK(refusal("sample_count", "1.5").find("whole number") != std::string::npos);
+  CHECK(refusal("sample_kind", "roumd").find("did you mean round?") != std::string::npos);
+  CHECK(refusal("sample_velocity", "1,2").find("three numbers") != std::string::npos);
+  CHECK(refusal("sample_verbose", "maybe").find("yes or no") != std::string::npos);
+}
+
+TEST_CASE("An unknown option is refused with the nearest known one") {
+  CHECK(refusal("sample_densty", "1").find("did you mean -sample_density?") != std::string::npos);
+  CHECK(refusal("zzzzzzzzzzz", "1").find("-help") != std::string::npos);
+}
+
+TEST_CASE("Later files win over earlier ones and the command line over both; errors quote file and line") {
+  std::ofstream("options_a.yaml") << "sample:\n  density: 1\n  count: 7\n";
+  std::ofstream("options_b.yaml") << "sample: {density: 2, list: [1.0, 2.0]}\n";
+  Options options = Options::from_arguments({"options_a.yaml", "-check", "options_b.yaml", "-sample_count", "9"});
+  Sample sample;
+  options.read("sample", sample);
+  CHECK(sample.density == 2);
+  CHECK(sample.count == 9);
+  CHECK(sample.list.size() == 2);
+  CHECK(options.given("check"));
+  CHECK(options.origin("sample_density") == "options_b.yaml:1");
+  CHECK_THROWS_AS(Options::from_arguments({"missing.yaml"}), UserError);
+  std::ofstream("options_c.yaml") << "a: [1, 2\nb: }";
+  CHECK_THROWS_AS(Options::from_arguments({"options_c.yaml"}), UserError);
+}
+
+TEST_CASE("Names of the user's choice are found by the property that follows them") {
+  Options options;
+  options.set("material_glass_density", "2500");
+  options.set("material_glass_bead_density", "2500");
+  CHECK(options.names("material", {"density", "friction"}) == std::vector<std::string>{"glass", "glass_bead"});
+  options.set("material_glass_densty", "1");
+  CHECK_THROWS_WITH(options.names("material", {"density", "friction"}),
+                    Catch::Contains("did you mean -material_glass_density?"));
+}
+
+TEST_CASE("Expressions know x, y, z, t and refuse nonsense") {
+  const Expression f("f", "2*x + y*z - t");
+  CHECK(f(Vec3(1, 2, 3), 4) == 4);
+  CHECK(!f.constant());
+  CHECK(Expression("f", "sin(pi/2)").constant());
+  CHECK_THROWS_AS(Expression("f", "2*+"), UserError);
+  CHECK_THROWS_AS(Expression("f", "2*q"), UserError);
+  const VectorExpression v("v", "0, 0, 0.6*min(t/0.1, 1)");
+  CHECK(v(Vec3::Zero(), 0.05)[2] == Approx(0.3));
+  CHECK_THROWS_AS(VectorExpression("v", "0, 1"), UserError);
+}
