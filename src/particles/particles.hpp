@@ -15,9 +15,11 @@ namespace silt {
 struct FluidAction {
   double velocity[3] = {0, 0, 0};  ///< m/s, fluid velocity at the particle (u^n)
   double exchange = 0;             ///< kg/s, drag coefficient k_p, constant over the fluid step
-  double force[3] = {0, 0, 0};     ///< N, every other fluid force, constant over the fluid step (pressure gradient, buoyancy, owed impulse)
-  double held = 0;                 ///< 0: free, 1: held by contacts (coupling keeps it here between steps)
-  double impulse[3] = {0, 0, 0};   ///< N s, drag impulse received since the last reset; the engine adds
+  double force[3] = {
+      0, 0,
+      0};  ///< N, every other fluid force, constant over the fluid step (pressure gradient, buoyancy, owed impulse)
+  double held = 0;                       ///< 0: free, 1: held by contacts (coupling keeps it here between steps)
+  double impulse[3] = {0, 0, 0};         ///< N s, drag impulse received since the last reset; the engine adds
   double start_velocity[3] = {0, 0, 0};  ///< m/s, velocity at the start of the fluid step; set by the coupling
 };
 
@@ -72,9 +74,11 @@ class Particles {
   double kinetic_energy() const;
   double rotational_energy() const;
   double total_mass() const;
-  /// N s given to the particles by gravity, by walls and by fluid since the last call; momentum change = their sum. Collective.
+  /// N s given to the particles by gravity, by walls and by fluid since the last call; momentum change = their sum.
+  /// Collective.
   struct Impulses {
-    Vec3 gravity = Vec3::Zero(), walls = Vec3::Zero(), drag = Vec3::Zero(), fluid_force = Vec3::Zero(), kicks = Vec3::Zero(), added = Vec3::Zero(), removed = Vec3::Zero();
+    Vec3 gravity = Vec3::Zero(), walls = Vec3::Zero(), drag = Vec3::Zero(), fluid_force = Vec3::Zero(),
+         kicks = Vec3::Zero(), added = Vec3::Zero(), removed = Vec3::Zero();
   };
   Impulses take_impulses();
 

@@ -1,0 +1,23 @@
+#pragma once
+#include <cmath>
+
+/// Force laws are written once for any number type: double (reference path, wall helpers, tests), a pack of doubles
+/// (the vectorised sweep, pack.hpp) or a dual number. They use + - * /, comparisons, sqrt, and the functions below.
+#define SILT_INLINE [[gnu::always_inline]] inline
+
+namespace silt {
+
+/// a where the condition holds, else b, in every lane; both are evaluated.
+SILT_INLINE double select(bool condition, double a, double b) { return condition ? a : b; }
+SILT_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
+
+template <class Real>
+SILT_INLINE Real larger(Real a, Real b) {
+  return select(a > b, a, b);
+}
+template <class Real>
+SILT_INLINE Real smaller(Real a, Real b) {
+  return select(a < b, a, b);
+}
+
+}  // namespace silt
