@@ -39,7 +39,8 @@ struct BoundaryFlow {
 /// The carrier phase on a mesh. Implementations: PressureCorrection, Monolithic. The flow never sees a particle.
 class Fluid {
  public:
-  /// Reads `-fluid_...` and `-boundary_<name>_...`; refuses a boundary without a condition. Collective.
+  /// Reads `-fluid_...` and `-boundary_<name>_...`; refuses a boundary without a condition. Null for `-fluid_type none`.
+  /// Collective.
   static std::unique_ptr<Fluid> create(const Mesh& mesh, Options& options, const Vec3& gravity);
   virtual ~Fluid() = default;
 
@@ -48,6 +49,10 @@ class Fluid {
   double viscosity() const { return viscosity_; }
   /// True for the volume-averaged form A (pressure gradient times alpha), false for form B.
   bool model_a() const { return model_a_; }
+  /// True when pressure() is the pressure less the static head rho g.x (the default): gravity then does not enter the
+  /// fluid's equation, and the buoyancy of a particle, -rho V_p g, comes on top of its pressure-gradient force. False
+  /// (`-fluid_hydrostatic yes`): the pressure gradient holds the static head and the buoyancy is part of -V_p grad p.
+  bool reduced_pressure() const { return reduced_pressure_; }
 
   /// Advances from time to time + dt with the present load. On SolveFailure the state is as before. Collective.
   virtual FluidStep advance(double time, double dt) = 0;
@@ -78,6 +83,7 @@ class Fluid {
   ParticleLoad load_;
   double density_ = 0, viscosity_ = 0;
   bool model_a_ = true;
+  bool reduced_pressure_ = true;
 };
 
 }  // namespace silt

@@ -1,0 +1,223 @@
+#include "fluid/boundary/boundary_conditions.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <limits>
+
+#include "base/error.hpp"
+
+namespace silt {
+namespace {
+
+constexpr int symmetric[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+
+}  // namespace
+
+void BoundaryOptions::options(OptionGroup& option) {
+  option("type", type, {"no_slip", "slip", "symmetry", "velocity", "mass_flow", "pressure"},
+         "what the flow obeys on this boundary; slip and symmetry are the same");
+  option("velocity", velocity,
+         "m/s; type velocity: superficial velocity (void fraction times velocity) as formulas in x, y, z, t; type "
+         "no_slip: velocity of the wall");
+  option("mass_flow", mass_flow, "kg/s into the domain (per metre of depth in 2D), a formula in t; uniform and normal");
+  option("pressure", pressure, "Pa, formula in x, y, z, t");
+}
+
+BoundaryConditions::BoundaryConditions(const Mesh& mesh, Options& options, double density)
+    : mesh_(mesh), density_(density), facets_(facet_rules(mesh)) {
+  read(options);
+  areas_.assign(mesh.boundaries.size(), 0);
+  for (const auto& facet : facets_)
+    for (int q = 0; q < facet.points; q++) areas_[facet.boundary] += facet.point[q].area.norm();
+  for (auto& area : areas_) area = mpi_sum(area);
+  find_nodes();
+  velocity_.assign(3 * mesh.nodes, 0);
+  pressure_.assign(mesh.nodes, 0);
+  flow_.assign(mesh.nodes, 0);
+  boundary_flow_.assign(mesh.boundaries.size(), 0);
+}
+
+void BoundaryConditions::read(Options& options) {
+  std::string missing;
+  for (const auto& name : mesh_.boundaries) {
+    const std::string prefix = "boundary_" + name;
+    BoundaryOptions given;
+    options.read(prefix, given);
+    Condition condition;
+    if (given.type.empty()) {
+      missing += (missing.empty() ? "" : ", ") + name;
+      conditions_.push_back(std::move(condition));
+      continue;
+    }
+    using enum BoundaryType;
+    condition.type = given.type == "no_slip"     ? no_slip
+                     : given.type == "velocity"  ? velocity
+                     : given.type == "mass_flow" ? mass_flow
+                     : given.type == "pressure"  ? pressure
+                                                 : slip;
+    const auto check = [&](const char* property, bool allowed, bool required) {
+      const std::string option = prefix + "_" + property;
+      if (options.given(option) && !allowed)
+        throw UserError(fmt::format("-{} has no meaning on a boundary of type {}", option, given.type));
+      if (required && !options.given(option))
+        throw UserError(fmt::format("-{} is missing: boundary {} has type {}", option, name, given.type));
+    };
+    check("velocity", condition.type == velocity || condition.type == no_slip, condition.type == velocity);
+    check("mass_flow", condition.type == mass_flow, condition.type == mass_flow);
+    check("pressure", condition.type == pressure, false);
+    condition.moving = condition.type == no_slip && options.given(prefix + "_velocity");
+    condition.velocity = std::make_unique<VectorExpression>(prefix + "_velocity", given.velocity);
+    condition.mass_flow = std::make_unique<Expression>(prefix + "_mass_flow", given.mass_flow);
+    condition.pressure = std::make_unique<Expression>(prefix + "_pressure", given.pressure);
+    closed_ = closed_ && condition.type != pressure;
+    conditions_.push_back(std::move(condition));
+  }
+  if (!missing.empty())
+    throw UserError(
+        fmt::format("no condition on boundary {}: give -boundary_<name>_type no_slip, slip, symmetry, "
+                    "velocity, mass_flow or pressure",
+                    missing));
+}
+
+void BoundaryConditions::find_nodes() {
+  const int nodes = mesh_.nodes, count = static_cast<int>(conditions_.size());
+  velocity_boundary_.assign(nodes, -1);
+  pressure_boundary_.assign(nodes, -1);
+  normal_.assign(3 * nodes, 0);
+  std::vector<int> best(nodes, std::numeric_limits<int>::max());
+  // A node may lie on a boundary whose facets all belong to other ranks: count over all ranks, one boundary at a time.
+  // Touches [0], area-weighted normal [1..3], moments of the unit normals [4..9].
+  std::vector<double> touch(10 * static_cast<std::size_t>(nodes)), slip_normals(6 * static_cast<std::size_t>(nodes));
+  for (int b = 0; b < count; b++) {
+    std::fill(touch.begin(), touch.end(), 0.0);
+    for (const auto& facet : facets_) {
+      if (facet.boundary != b) continue;
+      Vec3 area = Vec3::Zero();
+      for (int q = 0; q < facet.points; q++) area += facet.point[q].area;
+      const Vec3 unit = area.normalized();
+      for (int a = 0; a < facet.nodes; a++) {
+        double* t = &touch[10 * static_cast<std::size_t>(facet.node[a])];
+        t[0] += 1;
+        for (int d = 0; d < 3; d++) t[1 + d] += area[d];
+        for (int m = 0; m < 6; m++) t[4 + m] += unit[symmetric[m][0]] * unit[symmetric[m][1]];
+      }
+    }
+    mesh_.sum_shared(touch.data(), 10);
+    const auto& condition = conditions_[b];
+    for (int i = 0; i < nodes; i++) {
+      const double* t = &touch[10 * static_cast<std::size_t>(i)];
+      if (t[0] == 0) continue;
+      if (condition.type == BoundaryType::pressure) {
+        if (pressure_boundary_[i] < 0) pressure_boundary_[i] = b;
+        continue;
+      }
+      if (condition.type == BoundaryType::slip)
+        for (int m = 0; m < 6; m++) slip_normals[6 * static_cast<std::size_t>(i) + m] += t[4 + m];
+      const int rank = 2 * static_cast<int>(condition.type) + condition.moving;
+      if (rank < best[i]) {
+        best[i] = rank;
+        velocity_boundary_[i] = b;
+        vec3(&normal_[3 * i]) = Vec3(t[1], t[2], t[3]).normalized();
+      }
+    }
+  }
+  find_constraints(slip_normals);
+}
+
+void BoundaryConditions::find_constraints(const std::vector<double>& slip_normals) {
+  for (int i = 0; i < mesh_.nodes; i++) {
+    if (velocity_boundary_[i] < 0) continue;
+    Constraint constraint{i, 3, {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}};
+    if (type(velocity_boundary_[i]) == BoundaryType::slip) {
+      Mat3 moments;
+      for (int m = 0; m < 6; m++)
+        moments(symmetric[m][0], symmetric[m][1]) = moments(symmetric[m][1], symmetric[m][0]) =
+            slip_normals[6 * static_cast<std::size_t>(i) + m];
+      Eigen::SelfAdjointEigenSolver<Mat3> eigen(moments);
+      // Two facets whose normals differ by d give eigenvalues in the ratio tan2(d/2): 0.05 is 25 degrees.
+      constraint.count = 0;
+      for (int k = 2; k >= 0; k--)
+        if (eigen.eigenvalues()[k] > 0.05 * eigen.eigenvalues()[2])
+          constraint.direction[constraint.count++] = eigen.eigenvectors().col(k);
+    }
+    constraints_.push_back(constraint);
+  }
+}
+
+void BoundaryConditions::evaluate(double time, const double* void_fraction) {
+  std::vector<double> normal_speed(conditions_.size(), 0);
+  for (std::size_t b = 0; b < conditions_.size(); b++)
+    if (conditions_[b].type == BoundaryType::mass_flow)
+      normal_speed[b] = -(*conditions_[b].mass_flow)(Vec3::Zero(), time) / (density_ * areas_[b]);
+  for (const auto& constraint : constraints_) {
+    const int i = constraint.node, b = velocity_boundary_[i];
+    const auto& condition = conditions_[b];
+    auto value = vec3(&velocity_[3 * i]);
+    const double alpha = void_fraction ? void_fraction[i] : 1.0;
+    if (condition.type == BoundaryType::velocity)
+      value = (*condition.velocity)(vec3(&mesh_.node_coordinates[3 * i]), time) / alpha;
+    else if (condition.type == BoundaryType::mass_flow)
+      value = vec3(&normal_[3 * i]) * (normal_speed[b] / alpha);
+    else if (condition.moving)
+      value = (*condition.velocity)(vec3(&mesh_.node_coordinates[3 * i]), time);
+    if (mesh_.dimension == 2) value.z() = 0;
+  }
+  for (int i = 0; i < mesh_.nodes; i++)
+    if (pressure_boundary_[i] >= 0)
+      pressure_[i] = (*conditions_[pressure_boundary_[i]].pressure)(vec3(&mesh_.node_coordinates[3 * i]), time);
+  add_flow(time);
+}
+
+void BoundaryConditions::add_flow(double time) {
+  std::fill(flow_.begin(), flow_.end(), 0.0);
+  std::fill(boundary_flow_.begin(), boundary_flow_.end(), 0.0);
+  bool flows = false;
+  for (const auto& condition : conditions_)
+    flows = flows || condition.type == BoundaryType::velocity || condition.type == BoundaryType::mass_flow;
+  if (!flows) return;
+  for (const auto& facet : facets_) {
+    const auto& condition = conditions_[facet.boundary];
+    const bool given = condition.type == BoundaryType::velocity, uniform = condition.type == BoundaryType::mass_flow;
+    if (!given && !uniform) continue;
+    const double speed =
+        uniform ? -(*condition.mass_flow)(Vec3::Zero(), time) / (density_ * areas_[facet.boundary]) : 0.0;
+    for (int q = 0; q < facet.points; q++) {
+      const auto& point = facet.point[q];
+      const double out = uniform ? speed * point.area.norm() : (*condition.velocity)(point.x, time).dot(point.area);
+      boundary_flow_[facet.boundary] += out;
+      for (int a = 0; a < facet.nodes; a++) flow_[facet.node[a]] += point.shape[a] * out;
+    }
+  }
+  mesh_.sum_shared(flow_.data(), 1);
+  MPI_Allreduce(MPI_IN_PLACE, boundary_flow_.data(), static_cast<int>(boundary_flow_.size()), MPI_DOUBLE, MPI_SUM,
+                PETSC_COMM_WORLD);
+}
+
+void BoundaryConditions::impose(double* u) const {
+  for (const auto& constraint : constraints_) {
+    auto value = vec3(u + 3 * constraint.node);
+    const auto given = vec3(&velocity_[3 * constraint.node]);
+    if (constraint.count == 3) {
+      value = given;
+      continue;
+    }
+    for (int k = 0; k < constraint.count; k++) {
+      const Vec3& n = constraint.direction[k];
+      value += n * n.dot(given - value);
+    }
+  }
+}
+
+void BoundaryConditions::project(double* r) const {
+  for (const auto& constraint : constraints_) {
+    auto value = vec3(r + 3 * constraint.node);
+    if (constraint.count == 3) {
+      value.setZero();
+      continue;
+    }
+    for (int k = 0; k < constraint.count; k++) value -= constraint.direction[k] * constraint.direction[k].dot(value);
+  }
+}
+
+}  // namespace silt

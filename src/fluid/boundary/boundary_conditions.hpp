@@ -1,0 +1,107 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/expression.hpp"
+#include "base/mesh.hpp"
+#include "base/options.hpp"
+#include "fluid/boundary/facets.hpp"
+
+namespace silt {
+
+/// What the flow obeys on a boundary; the smaller value wins where boundaries with different conditions meet.
+enum class BoundaryType { no_slip, velocity, mass_flow, slip, pressure };
+
+/// The options `-boundary_<name>_...` of the fluid.
+struct BoundaryOptions {
+  std::string type;
+  std::string velocity = "0, 0, 0";
+  std::string mass_flow = "0";
+  std::string pressure = "0";
+  void options(OptionGroup& option);
+};
+
+/// The conditions on all boundaries of the mesh, evaluated at the nodes and on the facets.
+///
+/// Velocity: at a constrained node one to three orthonormal directions are fixed. Where boundaries meet, a node takes
+/// the condition of the strongest: resting wall (no_slip without velocity), moving wall, velocity, mass_flow; of two
+/// equal ones the first in Mesh::boundaries. If none of these touches it, all slip facets around it count together: the
+/// fixed directions span their normals (three faces in a corner fix all three), directions that differ by less than 25
+/// degrees being one (curved surfaces). Pressure is fixed at every node of a pressure boundary, also where a wall meets
+/// it.
+///
+/// The volume flow through velocity and mass_flow boundaries is the integral of what the user gave, not of the nodal
+/// values: a uniform inflow between no-slip walls delivers its full flow. No flow passes no_slip and slip boundaries.
+class BoundaryConditions {
+ public:
+  /// Reads `-boundary_<name>_...` for every boundary of the mesh; throws UserError for one without a condition or with
+  /// parameters that do not fit its type. Collective.
+  BoundaryConditions(const Mesh& mesh, Options& options, double density);
+
+  BoundaryType type(int boundary) const { return conditions_[boundary].type; }
+  /// True when no boundary fixes the pressure: it is then determined up to a constant.
+  bool closed() const { return closed_; }
+  const std::vector<FacetRule>& facets() const { return facets_; }
+  /// m2, area of a boundary over all ranks.
+  double area(int boundary) const { return areas_[boundary]; }
+
+  /// The fixed directions of one node (rows 0..count-1, orthonormal).
+  struct Constraint {
+    int node;
+    int count;
+    std::array<Vec3, 3> direction;
+  };
+  /// The constrained nodes of this rank, ascending; the same directions on every rank that shares a node.
+  const std::vector<Constraint>& constraints() const { return constraints_; }
+  /// [nodes] boundary whose condition the node's velocity takes, -1 where it is free (for slip: the first slip
+  /// boundary).
+  const std::vector<int>& velocity_boundary() const { return velocity_boundary_; }
+  /// [nodes] first pressure boundary of the node, -1 where the pressure is free.
+  const std::vector<int>& pressure_boundary() const { return pressure_boundary_; }
+
+  /// Evaluates every condition at time t; void_fraction [nodes] turns the superficial velocities given into
+  /// interstitial ones (null: 1).
+  void evaluate(double time, const double* void_fraction);
+  /// [nodes][3] m/s, interstitial velocity prescribed by the last evaluate(); 0 where nothing is.
+  const std::vector<double>& velocity() const { return velocity_; }
+  /// [nodes] Pa, prescribed by the last evaluate(); 0 where nothing is.
+  const std::vector<double>& pressure() const { return pressure_; }
+  /// [nodes] m3/s, int N_i U.n over velocity and mass_flow boundaries, U the superficial velocity given.
+  const std::vector<double>& flow() const { return flow_; }
+  /// m3/s, outflow (positive) prescribed by the last evaluate() per boundary, over all ranks.
+  const std::vector<double>& boundary_flow() const { return boundary_flow_; }
+
+  /// Sets the fixed directions of u [nodes][3] to the prescribed velocity.
+  void impose(double* u) const;
+  /// Removes the fixed directions from a residual or correction r [nodes][3].
+  void project(double* r) const;
+
+ private:
+  struct Condition {
+    BoundaryType type = BoundaryType::no_slip;
+    bool moving = false;
+    std::unique_ptr<VectorExpression> velocity;
+    std::unique_ptr<Expression> mass_flow, pressure;
+  };
+  void read(Options& options);
+  void find_nodes();
+  void find_constraints(const std::vector<double>& slip_normals);
+  void add_flow(double time);
+
+  const Mesh& mesh_;
+  double density_;
+  std::vector<Condition> conditions_;
+  std::vector<FacetRule> facets_;
+  std::vector<double> areas_;
+  bool closed_ = true;
+  std::vector<Constraint> constraints_;
+  std::vector<int> velocity_boundary_, pressure_boundary_;
+  std::vector<double> normal_;  ///< [nodes][3] unit outward normal of the node's mass_flow boundary
+  std::vector<double> velocity_, pressure_, flow_, boundary_flow_;
+};
+
+}  // namespace silt
