@@ -64,6 +64,17 @@ bool belongs_to_petsc(const std::string& name) {
   return false;
 }
 
+/// Whether a name is the pattern with a word in place of each `<...>`.
+bool matches(std::string_view name, std::string_view pattern) {
+  const auto open = pattern.find('<');
+  if (open == std::string_view::npos) return name == pattern;
+  const auto close = pattern.find('>', open);
+  if (name.substr(0, open) != pattern.substr(0, open)) return false;
+  for (size_t k = open + 1; k <= name.size(); ++k)
+    if (matches(name.substr(k), pattern.substr(close + 1))) return true;
+  return false;
+}
+
 void flatten(const YAML::Node& node, const std::string& prefix, const std::string& file, Options& options) {
   const std::string origin = fmt::format("{}:{}", file, node.Mark().line + 1);
   if (node.IsMap()) {
@@ -85,13 +96,24 @@ void flatten(const YAML::Node& node, const std::string& prefix, const std::strin
   }
 }
 
-void read_yaml(const std::string& file, Options& options) {
+/// Reads a file into the options; `include: other.yaml` (or a list) at its top is read first, relative to the file.
+void read_yaml(const std::string& file, Options& options, int depth = 0) {
+  if (depth > 8) throw UserError(fmt::format("{}: include: the files include each other in a circle", file));
   if (!std::filesystem::is_regular_file(file)) throw UserError(fmt::format("options file '{}' does not exist", file));
   try {
     const YAML::Node root = YAML::LoadFile(file);
     if (root.IsNull()) return;
     if (!root.IsMap()) throw UserError(fmt::format("{}: an options file is a map of names and values", file));
-    flatten(root, "", file, options);
+    for (const auto& pair : root) {
+      const auto key = pair.first.as<std::string>();
+      if (key != "include") continue;
+      const auto folder = std::filesystem::path(file).parent_path();
+      const YAML::Node& names = pair.second;
+      for (size_t k = 0; k < (names.IsSequence() ? names.size() : 1); ++k)
+        read_yaml((folder / (names.IsSequence() ? names[k] : names).as<std::string>()).string(), options, depth + 1);
+    }
+    for (const auto& pair : root)
+      if (const auto key = pair.first.as<std::string>(); key != "include") flatten(pair.second, key, file, options);
   } catch (const YAML::Exception& e) {
     throw UserError(fmt::format("{}:{}: not valid YAML: {}", file, e.mark.line + 1, e.msg));
   }
@@ -180,16 +202,21 @@ void Options::insert_into_petsc() const {
     PetscOptionsSetValue(nullptr, ("-" + name).c_str(), given.value.empty() ? nullptr : given.value.c_str());
 }
 
-void Options::refuse_unknown() const {
+void Options::refuse_unknown(const Options* catalogue) const {
   std::vector<std::string> known;
   for (const auto& entry : entries_) known.push_back(entry.name);
+  std::vector<std::string> patterns;
+  if (catalogue)
+    for (const auto& entry : catalogue->entries_) patterns.push_back(entry.name);
   for (const auto& [name, given] : given_) {
     if (given.used || belongs_to_petsc(name)) continue;
     PetscBool used = PETSC_FALSE;
     PetscOptionsUsed(nullptr, ("-" + name).c_str(), &used);
-    if (used) continue;
-    const bool declared = std::find(known.begin(), known.end(), name) != known.end();
-    if (declared) continue;
+    const auto fits = [&word = name](const std::string& pattern) { return matches(word, pattern); };
+    if (used || std::find(known.begin(), known.end(), name) != known.end() ||
+        std::any_of(patterns.begin(), patterns.end(), fits))
+      continue;
+    known.insert(known.end(), patterns.begin(), patterns.end());
     const std::string hint = nearest(name, known);
     throw UserError(fmt::format("unknown option -{} ({}){}", name, given.origin,
                                 hint.empty() ? "; -help lists all" : fmt::format(", did you mean -{}?", hint)));

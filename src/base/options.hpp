@@ -71,8 +71,10 @@ class Options {
 
   /// Hands everything given to PETSc's own options database (solver options are PETSc's).
   void insert_into_petsc() const;
-  /// Throws UserError with the nearest known name for every option given that nobody declared and PETSc did not use.
-  void refuse_unknown() const;
+  /// Throws UserError with the nearest known name for an option given that nobody declared and PETSc did not use.
+  /// `catalogue` declares every option there is, with `<name>` for the user's words: one that is in it but belongs to a
+  /// feature that is off in this run is let through.
+  void refuse_unknown(const Options* catalogue = nullptr) const;
 
   const std::vector<OptionEntry>& entries() const { return entries_; }
   void declare(OptionEntry entry);

@@ -1,4 +1,7 @@
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <fstream>
 
 #include "base/error.hpp"
@@ -25,6 +28,19 @@ struct Sample {
     option("velocity", velocity, "m/s", "velocity");
     option("list", list, "m", "lengths", positive);
     option("extra", extra, "Pa", "something else");
+  }
+};
+
+/// Makes an empty folder of its own the working folder, so that tests leave nothing behind where they are run.
+struct ScratchFolder {
+  std::filesystem::path before = std::filesystem::current_path(), folder;
+  ScratchFolder() : folder(std::filesystem::temp_directory_path() / ("silt_options_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder);
+    std::filesystem::current_path(folder);
+  }
+  ~ScratchFolder() {
+    std::filesystem::current_path(before);
+    std::filesystem::remove_all(folder);
   }
 };
 
@@ -76,6 +92,7 @@ TEST_CASE("An unknown option is refused with the nearest known one") {
 }
 
 TEST_CASE("Later files win over earlier ones and the command line over both; errors quote file and line") {
+  const ScratchFolder scratch;
   std::ofstream("options_a.yaml") << "sample:\n  density: 1\n  count: 7\n";
   std::ofstream("options_b.yaml") << "sample: {density: 2, list: [1.0, 2.0]}\n";
   Options options = Options::from_arguments({"options_a.yaml", "-check", "options_b.yaml", "-sample_count", "9"});
@@ -111,4 +128,26 @@ TEST_CASE("Expressions know x, y, z, t and refuse nonsense") {
   const VectorExpression v("v", "0, 0, 0.6*min(t/0.1, 1)");
   CHECK(v(Vec3::Zero(), 0.05)[2] == Approx(0.3));
   CHECK_THROWS_AS(VectorExpression("v", "0, 1"), UserError);
+}
+
+TEST_CASE("An options file may build on another one, which it overrides") {
+  const ScratchFolder scratch;
+  std::ofstream("options_base.yaml") << "sample: {density: 1, count: 5}\n";
+  std::ofstream("options_derived.yaml") << "sample: {density: 2}\ninclude: options_base.yaml\n";
+  Options options = Options::from_arguments({"options_derived.yaml"});
+  Sample sample;
+  options.read("sample", sample);
+  CHECK(sample.density == 2);
+  CHECK(sample.count == 5);
+  std::ofstream("options_loop.yaml") << "include: [options_loop.yaml]\n";
+  CHECK_THROWS_AS(Options::from_arguments({"options_loop.yaml"}), UserError);
+}
+
+TEST_CASE("An option of a feature that is off is let through when the catalogue knows it") {
+  Options catalogue, options;
+  catalogue.declare({"boundary_<name>_type", "word", "", "", "", "", "", false});
+  options.set("boundary_z_min_type", "pressure");
+  CHECK_NOTHROW(options.refuse_unknown(&catalogue));
+  options.set("boundary_z_min_tipe", "pressure");
+  CHECK_THROWS_AS(options.refuse_unknown(&catalogue), UserError);
 }
