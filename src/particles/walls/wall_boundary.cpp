@@ -1,0 +1,65 @@
+#include "particles/walls/wall_boundary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+
+namespace silt {
+namespace {
+
+struct BoundaryOptions {
+  std::string role = "wall", material;
+  void options(OptionGroup& option) {
+    option("particles", role, {"wall", "outlet", "open"},
+           "what the boundary is to particles: a wall (default of every fluid type but pressure), an outlet where they "
+           "leave, or open (no wall; a particle that passes is an error)");
+    option("material", material, "material of the wall; default: the first material in alphabetical order");
+  }
+};
+
+}  // namespace
+
+std::vector<WallBoundary> read_wall_boundaries(const Mesh& mesh, Options& options,
+                                               const std::vector<std::string>& materials) {
+  std::vector<WallBoundary> result;
+  for (const auto& name : mesh.boundaries) {
+    const std::string prefix = "boundary_" + name;
+    const std::string type = options.find(prefix + "_type").value_or("");
+    BoundaryOptions chosen;
+    if (type == "pressure") chosen.role = "outlet";
+    options.read(prefix, chosen);
+    WallBoundary boundary;
+    boundary.role = chosen.role == "wall"     ? BoundaryRole::wall
+                    : chosen.role == "outlet" ? BoundaryRole::outlet
+                                              : BoundaryRole::open;
+    if (chosen.material.empty()) {
+      boundary.material = static_cast<int>(std::min_element(materials.begin(), materials.end()) - materials.begin());
+    } else {
+      const auto found = std::find(materials.begin(), materials.end(), chosen.material);
+      if (found == materials.end()) {
+        const std::string hint = nearest(chosen.material, materials);
+        throw UserError(fmt::format("option -{}_material ({}): '{}' is not a material; there are {}{}", prefix,
+                                    options.origin(prefix + "_material"), chosen.material, fmt::join(materials, ", "),
+                                    hint.empty() ? "" : fmt::format(" (did you mean {}?)", hint)));
+      }
+      boundary.material = static_cast<int>(found - materials.begin());
+    }
+    // The velocity of an inflow is the fluid's; that of a wall is its own.
+    if (type.empty() || type == "no_slip") {
+      if (const auto text = options.find(prefix + "_velocity")) {
+        VectorExpression velocity("-" + prefix + "_velocity", *text);
+        if (velocity.constant())
+          boundary.velocity = velocity(Vec3::Zero(), 0);
+        else
+          boundary.motion = std::move(velocity);
+      }
+    }
+    result.push_back(std::move(boundary));
+  }
+  return result;
+}
+
+}  // namespace silt

@@ -1,0 +1,36 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/expression.hpp"
+#include "base/mesh.hpp"
+#include "base/options.hpp"
+
+namespace silt {
+
+/// What a boundary of the mesh is to the particles.
+enum class BoundaryRole {
+  wall,    ///< they collide with it
+  outlet,  ///< a particle whose centre passes it leaves the run and is counted
+  open     ///< no wall and no outlet: a particle whose centre passes it is an error that the engine reports
+};
+
+/// One boundary of the mesh for the particles, by the options `-boundary_<name>_particles`, `_material`, and
+/// `_velocity` where the boundary is `no_slip` (or has no fluid type): the velocity of the wall's material, the shape
+/// staying where it is (a conveyor, a lid, a rotating drum's shell).
+struct WallBoundary {
+  BoundaryRole role = BoundaryRole::wall;
+  int material = 0;                        ///< index into the materials
+  Vec3 velocity = Vec3::Zero();            ///< m/s, when `motion` is empty
+  std::optional<VectorExpression> motion;  ///< velocity that varies in space or time
+
+  Vec3 velocity_at(const Vec3& point, double time) const { return motion ? (*motion)(point, time) : velocity; }
+};
+
+/// Reads the options of every boundary of the mesh. A boundary is a wall unless its fluid type is `pressure` (outlet);
+/// its material is the first of `materials` in alphabetical order unless given.
+std::vector<WallBoundary> read_wall_boundaries(const Mesh& mesh, Options& options,
+                                               const std::vector<std::string>& materials);
+
+}  // namespace silt
