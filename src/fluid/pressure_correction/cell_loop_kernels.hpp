@@ -1,0 +1,410 @@
+// The element loops, written once for vectors of SILT_LANES doubles (one lane a cell). Included by one unit for each
+// instruction set, which defines SILT_LANES; everything here has internal linkage so that no unit's code is used by
+// another. Formulas: docs/theory/pressure_correction.md; equation numbers of that page stand in the comments.
+#include "fluid/pressure_correction/cell_loop_arguments.hpp"
+
+namespace silt {
+namespace {
+
+constexpr int W = SILT_LANES;
+typedef double Lanes __attribute__((vector_size(8 * W)));
+
+inline Lanes load(const double* p) {
+  Lanes r = {};
+  for (int l = 0; l < W; ++l) r[l] = p[l];
+  return r;
+}
+inline void store(double* p, Lanes v) {
+  for (int l = 0; l < W; ++l) p[l] = v[l];
+}
+inline Lanes square_root(Lanes x) {
+  Lanes r = {};
+  for (int l = 0; l < W; ++l) r[l] = __builtin_sqrt(x[l]);
+  return r;
+}
+inline Lanes constant(double x) { return Lanes{} + x; }
+
+/// Sizes of the four cells, by the value of enum Cell.
+template <int kind>
+struct Shape {
+  static constexpr int D = kind < 2 ? 2 : 3;
+  static constexpr int nodes = kind == 0 ? 3 : kind == 3 ? 8 : 4;
+  static constexpr int points = nodes;
+  static constexpr bool simplex = kind == 0 || kind == 2;
+};
+
+/// Corner coordinates of a batch, and shape gradients at one quadrature point.
+template <int kind>
+struct Geometry {
+  static constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
+  Lanes x[nodes][D];
+  Lanes gradient[nodes][D];
+  Lanes volume;  ///< weight times Jacobian
+
+  Geometry(const CellBatches& mesh, int batch) {
+    const double* p = mesh.coordinates + static_cast<long>(batch) * nodes * D * W;
+    for (int a = 0; a < nodes; ++a)
+      for (int d = 0; d < D; ++d, p += W) x[a][d] = load(p);
+  }
+
+  void at(const ReferenceCell& reference, int q) {
+    if (Shape<kind>::simplex && q > 0) return;  // the gradients and the weights of a simplex rule are constant
+    Lanes J[D][D] = {};
+    for (int a = 0; a < nodes; ++a)
+      for (int i = 0; i < D; ++i)
+        for (int d = 0; d < D; ++d) J[i][d] += x[a][i] * reference.gradient[q][a][d];
+    Lanes inverse[D][D], determinant;
+    if constexpr (D == 3) {
+      const Lanes c00 = J[1][1] * J[2][2] - J[1][2] * J[2][1], c01 = J[1][2] * J[2][0] - J[1][0] * J[2][2],
+                  c02 = J[1][0] * J[2][1] - J[1][1] * J[2][0];
+      determinant = J[0][0] * c00 + J[0][1] * c01 + J[0][2] * c02;
+      const Lanes r = 1.0 / determinant;
+      inverse[0][0] = c00 * r, inverse[1][0] = c01 * r, inverse[2][0] = c02 * r;
+      inverse[0][1] = (J[0][2] * J[2][1] - J[0][1] * J[2][2]) * r;
+      inverse[1][1] = (J[0][0] * J[2][2] - J[0][2] * J[2][0]) * r;
+      inverse[2][1] = (J[0][1] * J[2][0] - J[0][0] * J[2][1]) * r;
+      inverse[0][2] = (J[0][1] * J[1][2] - J[0][2] * J[1][1]) * r;
+      inverse[1][2] = (J[0][2] * J[1][0] - J[0][0] * J[1][2]) * r;
+      inverse[2][2] = (J[0][0] * J[1][1] - J[0][1] * J[1][0]) * r;
+    } else {
+      determinant = J[0][0] * J[1][1] - J[0][1] * J[1][0];
+      const Lanes r = 1.0 / determinant;
+      inverse[0][0] = J[1][1] * r, inverse[0][1] = -J[0][1] * r;
+      inverse[1][0] = -J[1][0] * r, inverse[1][1] = J[0][0] * r;
+    }
+    for (int a = 0; a < nodes; ++a)
+      for (int i = 0; i < D; ++i) {
+        gradient[a][i] = reference.gradient[q][a][0] * inverse[0][i];
+        for (int d = 1; d < D; ++d) gradient[a][i] += reference.gradient[q][a][d] * inverse[d][i];
+      }
+    volume = determinant * reference.weight[q];
+  }
+};
+
+/// C of the `stride` values of every node of the batch.
+template <int nodes, int C>
+inline void gather(Lanes (&out)[nodes][C], const double* field, int stride, const int* node) {
+  for (int a = 0; a < nodes; ++a)
+    for (int c = 0; c < C; ++c) {
+      Lanes v = {};
+      for (int l = 0; l < W; ++l) v[l] = field[static_cast<long>(stride) * node[a * W + l] + c];
+      out[a][c] = v;
+    }
+}
+
+template <int nodes, int C>
+inline void scatter(const Lanes (&in)[nodes][C], double* field, int stride, const int* node, int lanes) {
+  for (int a = 0; a < nodes; ++a)
+    for (int l = 0; l < lanes; ++l) {
+      double* p = field + static_cast<long>(stride) * node[a * W + l];
+      for (int c = 0; c < C; ++c) p[c] += in[a][c][l];
+    }
+}
+
+template <int nodes>
+inline void scatter_matrix(const Lanes (&in)[nodes][nodes], double* values, const int* entry, int lanes) {
+  for (int l = 0; l < lanes; ++l, entry += nodes * nodes)
+    for (int a = 0; a < nodes; ++a)
+      for (int b = 0; b < nodes; ++b) values[entry[a * nodes + b]] += in[a][b][l];
+}
+
+template <int kind>
+inline const int* batch_nodes(const CellBatches& mesh, int batch) {
+  return mesh.nodes + static_cast<long>(batch) * Shape<kind>::nodes * W;
+}
+inline int lanes_of(const CellBatches& mesh, int batch) {
+  const int left = mesh.cells - batch * W;
+  return left < W ? left : W;
+}
+
+template <int kind>
+void coefficients(const CellBatches& mesh, const CoefficientTerms& in, const CellCoefficients& out) {
+  constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
+  for (int batch = 0; batch < mesh.batches; ++batch) {
+    const int* node = batch_nodes<kind>(mesh, batch);
+    const long at = static_cast<long>(batch) * W;
+    Lanes w[nodes][D], speed2 = {}, alpha = constant(1), beta = {};
+    gather(w, in.velocity, 3, node);
+    for (int a = 0; a < nodes; ++a)
+      for (int d = 0; d < D; ++d) speed2 += w[a][d] * w[a][d] * (1.0 / nodes);
+    if (in.void_fraction) {
+      Lanes alphas[nodes][1], betas[nodes][1];
+      gather(alphas, in.void_fraction, 1, node);
+      gather(betas, in.drag, 1, node);
+      Lanes kappa = {};
+      alpha = Lanes{};
+      for (int a = 0; a < nodes; ++a) {
+        alpha += alphas[a][0] * (1.0 / nodes);
+        kappa += betas[a][0] / (alphas[a][0] * alphas[a][0]) * (1.0 / nodes);
+      }
+      beta = alpha * alpha * kappa;
+    }
+    const Lanes share = in.model_a ? alpha : constant(1);
+    const Lanes inertia = alpha * (in.density * in.rate) + beta, h = load(mesh.size + at);
+    const Lanes convection = alpha * (2 * in.density) / h, diffusion = alpha * (12 * in.viscosity) / (h * h);
+    store(out.void_fraction + at, alpha);
+    store(out.pressure_share + at, share);
+    store(out.drag + at, beta);
+    store(out.mobility + at, share / inertia);
+    store(out.stabilisation + at,
+          alpha * share / square_root(convection * convection * speed2 + diffusion * diffusion + inertia * inertia));
+    if (!out.balance[0]) continue;
+    Lanes force[D] = {}, body[D] = {};
+    for (int part = 0; part < 2; ++part) {
+      const double* field = part == 0 ? in.force : in.body_force;
+      if (!field) continue;
+      Lanes f[nodes][D];
+      gather(f, field, 3, node);
+      for (int a = 0; a < nodes; ++a)
+        for (int d = 0; d < D; ++d) (part == 0 ? force : body)[d] += f[a][d] * (1.0 / nodes);
+    }
+    for (int d = 0; d < D; ++d) {
+      store(out.force[d] + at, force[d]);
+      store(out.balance[d] + at, -(force[d] + body[d]) / share);
+    }
+  }
+}
+
+template <int kind, bool porous>
+void momentum(const CellBatches& mesh, const MomentumTerms& in, double* values, double* right) {
+  constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
+  const double rho = in.density, mu = in.viscosity;
+  for (int batch = 0; batch < mesh.batches; ++batch) {
+    const int* node = batch_nodes<kind>(mesh, batch);
+    const long at = static_cast<long>(batch) * W;
+    Geometry<kind> geometry(mesh, batch);
+    const auto& G = geometry.gradient;
+    Lanes w[nodes][D], history[nodes][D], p[nodes][1];
+    gather(w, in.velocity, 3, node);
+    gather(history, in.history, 3, node);
+    gather(p, in.pressure, 1, node);
+    Lanes alphas[porous ? nodes : 1][1], phi[porous ? nodes : 1][1], old_phi[porous ? nodes : 1][1];
+    Lanes share = constant(1), drag = {}, factor = {}, old_factor = {}, cell_force[D] = {};
+    if constexpr (porous) {
+      gather(alphas, in.void_fraction, 1, node);
+      gather(phi, in.increment, 1, node);
+      gather(old_phi, in.old_increment, 1, node);
+      share = load(in.cell_pressure_share + at);
+      drag = load(in.cell_drag + at);
+      factor = load(in.increment_factor + at);
+      old_factor = load(in.old_increment_factor + at);
+      if (in.force[0])
+        for (int d = 0; d < D; ++d) cell_force[d] = load(in.force[d] + at);
+    }
+    Lanes body[nodes][D];
+    if (in.body_force) gather(body, in.body_force, 3, node);
+    const Lanes h = load(mesh.size + at);
+    Lanes K[nodes][nodes] = {}, r[nodes][D] = {};
+    for (int q = 0; q < Shape<kind>::points; ++q) {
+      geometry.at(*mesh.reference, q);
+      const double* N = mesh.reference->shape[q];
+      const Lanes dV = geometry.volume;
+      Lanes wq[D] = {}, f[D] = {}, gp[D] = {}, alpha = constant(1), grad_alpha[D] = {};
+      if constexpr (porous) {
+        alpha = Lanes{};
+        for (int a = 0; a < nodes; ++a) {
+          alpha += N[a] * alphas[a][0];
+          for (int d = 0; d < D; ++d) grad_alpha[d] += G[a][d] * alphas[a][0];
+        }
+      }
+      for (int a = 0; a < nodes; ++a) {
+        Lanes effective;
+        if constexpr (porous)
+          effective = share * p[a][0] + factor * phi[a][0] - old_factor * old_phi[a][0];
+        else
+          effective = p[a][0];
+        for (int d = 0; d < D; ++d) {
+          wq[d] += N[a] * w[a][d];
+          f[d] += N[a] * history[a][d];
+          gp[d] += G[a][d] * effective;
+        }
+      }
+      for (int d = 0; d < D; ++d) f[d] = alpha * rho * f[d] - gp[d];
+      if (in.body_force)
+        for (int a = 0; a < nodes; ++a)
+          for (int d = 0; d < D; ++d) f[d] += N[a] * body[a][d];
+      Lanes speed2 = {};
+      for (int d = 0; d < D; ++d) speed2 += wq[d] * wq[d];
+      const Lanes convection = alpha * (2 * rho) / h, diffusion = alpha * (12 * mu) / (h * h);
+      const Lanes tau = in.supg / square_root(convection * convection * speed2 + diffusion * diffusion + drag * drag);
+      Lanes transport[nodes];  // alpha rho w.grad N
+      for (int a = 0; a < nodes; ++a) {
+        transport[a] = wq[0] * G[a][0];
+        for (int d = 1; d < D; ++d) transport[a] += wq[d] * G[a][d];
+        transport[a] *= alpha * rho;
+      }
+      // The particles' force acts at the nodes (Galerkin part); the streamline part sees its cell mean.
+      Lanes stream[D], extra[D] = {}, dilation = {};
+      for (int d = 0; d < D; ++d) stream[d] = f[d] + cell_force[d];
+      if constexpr (porous) {
+        // Explicit rest of the deviatoric stress, with w: mu grad w.grad alpha - mu div w grad alpha in the volume and
+        // mu/3 alpha div w against div N; zero for alpha = 1 and div w = 0.
+        Lanes gradient[D][D] = {};
+        for (int a = 0; a < nodes; ++a)
+          for (int i = 0; i < D; ++i)
+            for (int j = 0; j < D; ++j) gradient[i][j] += G[a][i] * w[a][j];
+        for (int d = 0; d < D; ++d) dilation += gradient[d][d];
+        for (int i = 0; i < D; ++i) {
+          for (int j = 0; j < D; ++j) extra[i] += mu * gradient[i][j] * grad_alpha[j];
+          extra[i] -= mu * dilation * grad_alpha[i];
+        }
+        dilation *= alpha * (mu / 3) * dV;
+      }
+      const Lanes inertia = alpha * (rho * in.rate), viscous = alpha * mu * dV;
+      Lanes operator_[nodes];
+      for (int b = 0; b < nodes; ++b) operator_[b] = inertia * N[b] + transport[b];
+      for (int a = 0; a < nodes; ++a) {
+        const Lanes galerkin = dV * N[a], streamline = dV * tau * transport[a], test = galerkin + streamline;
+        for (int d = 0; d < D; ++d) {
+          if constexpr (porous)
+            r[a][d] += galerkin * (f[d] + extra[d]) + streamline * stream[d] - dilation * G[a][d];
+          else
+            r[a][d] += test * f[d];
+        }
+        for (int b = 0; b < nodes; ++b) {
+          Lanes product = G[a][0] * G[b][0];
+          for (int d = 1; d < D; ++d) product += G[a][d] * G[b][d];
+          K[a][b] += test * operator_[b] + viscous * product;
+        }
+      }
+    }
+    const int lanes = lanes_of(mesh, batch);
+    scatter(r, right, 3, node, lanes);
+    scatter_matrix(K, values, mesh.entry + at * nodes * nodes, lanes);
+  }
+}
+
+template <int kind>
+void projection(const CellBatches& mesh, const ContinuityTerms& in, double* sums) {
+  constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
+  for (int batch = 0; batch < mesh.batches; ++batch) {
+    const int* node = batch_nodes<kind>(mesh, batch);
+    const long at = static_cast<long>(batch) * W;
+    Geometry<kind> geometry(mesh, batch);
+    const auto& G = geometry.gradient;
+    Lanes p[nodes][1], balance[D] = {}, r[nodes][4] = {};
+    gather(p, in.pressure, 1, node);
+    if (in.balance[0])
+      for (int d = 0; d < D; ++d) balance[d] = load(in.balance[d] + at);
+    const Lanes tau = load(in.stabilisation + at);
+    for (int q = 0; q < Shape<kind>::points; ++q) {
+      geometry.at(*mesh.reference, q);
+      const double* N = mesh.reference->shape[q];
+      Lanes g[D];
+      for (int d = 0; d < D; ++d) g[d] = balance[d];
+      for (int a = 0; a < nodes; ++a)
+        for (int d = 0; d < D; ++d) g[d] += G[a][d] * p[a][0];
+      const Lanes weight = geometry.volume * tau;
+      for (int a = 0; a < nodes; ++a) {
+        for (int d = 0; d < D; ++d) r[a][d] += N[a] * weight * g[d];
+        r[a][3] += N[a] * weight;
+      }
+    }
+    scatter(r, sums, 4, node, lanes_of(mesh, batch));
+  }
+}
+
+template <int kind>
+void continuity(const CellBatches& mesh, const ContinuityTerms& in, double* sums) {
+  constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
+  for (int batch = 0; batch < mesh.batches; ++batch) {
+    const int* node = batch_nodes<kind>(mesh, batch);
+    const long at = static_cast<long>(batch) * W;
+    Geometry<kind> geometry(mesh, batch);
+    const auto& G = geometry.gradient;
+    Lanes p[nodes][1], U[nodes][D], pi[nodes][D], balance[D] = {}, r[nodes][2] = {};
+    gather(p, in.pressure, 1, node);
+    gather(U, in.flux, 3, node);
+    gather(pi, in.projection, 3, node);
+    if (in.balance[0])
+      for (int d = 0; d < D; ++d) balance[d] = load(in.balance[d] + at);
+    const Lanes tau = load(in.stabilisation + at);
+    for (int q = 0; q < Shape<kind>::points; ++q) {
+      geometry.at(*mesh.reference, q);
+      const double* N = mesh.reference->shape[q];
+      Lanes flux[D] = {}, residual[D], divergence = {};
+      for (int d = 0; d < D; ++d) residual[d] = balance[d];
+      for (int a = 0; a < nodes; ++a)
+        for (int d = 0; d < D; ++d) {
+          flux[d] += N[a] * U[a][d];
+          residual[d] += G[a][d] * p[a][0] - N[a] * pi[a][d];
+          divergence += G[a][d] * U[a][d];
+        }
+      for (int d = 0; d < D; ++d) flux[d] = geometry.volume * (flux[d] - tau * residual[d]);
+      divergence *= geometry.volume;
+      for (int a = 0; a < nodes; ++a) {
+        for (int d = 0; d < D; ++d) r[a][0] += G[a][d] * flux[d];
+        r[a][1] += N[a] * divergence;
+      }
+    }
+    scatter(r, sums, 2, node, lanes_of(mesh, batch));
+  }
+}
+
+template <int kind>
+void diffusion(const CellBatches& mesh, const double* coefficient, double* values) {
+  constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
+  for (int batch = 0; batch < mesh.batches; ++batch) {
+    const long at = static_cast<long>(batch) * W;
+    Geometry<kind> geometry(mesh, batch);
+    const auto& G = geometry.gradient;
+    const Lanes c = load(coefficient + at);
+    Lanes K[nodes][nodes] = {};
+    constexpr int points = Shape<kind>::simplex ? 1 : Shape<kind>::points;
+    for (int q = 0; q < points; ++q) {
+      geometry.at(*mesh.reference, q);
+      const Lanes weight = c * geometry.volume * (Shape<kind>::simplex ? double(Shape<kind>::points) : 1.0);
+      for (int a = 0; a < nodes; ++a)
+        for (int b = 0; b < nodes; ++b) {
+          Lanes product = G[a][0] * G[b][0];
+          for (int d = 1; d < D; ++d) product += G[a][d] * G[b][d];
+          K[a][b] += weight * product;
+        }
+    }
+    scatter_matrix(K, values, mesh.entry + at * nodes * nodes, lanes_of(mesh, batch));
+  }
+}
+
+template <int kind>
+void effective_gradient(const CellBatches& mesh, const MomentumTerms& in, double* sums) {
+  constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
+  for (int batch = 0; batch < mesh.batches; ++batch) {
+    const int* node = batch_nodes<kind>(mesh, batch);
+    const long at = static_cast<long>(batch) * W;
+    Geometry<kind> geometry(mesh, batch);
+    Lanes p[nodes][1], total[D] = {};
+    gather(p, in.pressure, 1, node);
+    if (in.void_fraction) {
+      const Lanes share = load(in.cell_pressure_share + at), factor = load(in.increment_factor + at) / share,
+                  old_factor = load(in.old_increment_factor + at) / share;
+      Lanes phi[nodes][1], old_phi[nodes][1];
+      gather(phi, in.increment, 1, node);
+      gather(old_phi, in.old_increment, 1, node);
+      for (int a = 0; a < nodes; ++a) p[a][0] += factor * phi[a][0] - old_factor * old_phi[a][0];
+    }
+    for (int q = 0; q < Shape<kind>::points; ++q) {
+      geometry.at(*mesh.reference, q);
+      for (int a = 0; a < nodes; ++a)
+        for (int d = 0; d < D; ++d) total[d] += geometry.volume * geometry.gradient[a][d] * p[a][0];
+    }
+    Lanes r[nodes][D];
+    for (int a = 0; a < nodes; ++a)
+      for (int d = 0; d < D; ++d) r[a][d] = total[d] * (1.0 / nodes);
+    scatter(r, sums, 3, node, lanes_of(mesh, batch));
+  }
+}
+
+template <int kind>
+constexpr CellLoopTable table = {W,
+                                 coefficients<kind>,
+                                 momentum<kind, false>,
+                                 momentum<kind, true>,
+                                 projection<kind>,
+                                 continuity<kind>,
+                                 diffusion<kind>,
+                                 effective_gradient<kind>};
+
+constexpr const CellLoopTable* tables[4] = {&table<0>, &table<1>, &table<2>, &table<3>};
+
+}  // namespace
+}  // namespace silt

@@ -1,0 +1,109 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/nodal_matrix.hpp"
+#include "fluid/boundary/boundary_conditions.hpp"
+#include "fluid/fluid.hpp"
+#include "fluid/fluid_options.hpp"
+#include "fluid/pressure_correction/bdf.hpp"
+#include "fluid/pressure_correction/cell_loops.hpp"
+#include "fluid/pressure_correction/pressure_solver.hpp"
+#include "fluid/pressure_correction/velocity_solver.hpp"
+
+namespace silt {
+
+/// The options `-fluid_...` of the pressure correction alone.
+struct PressureCorrectionOptions {
+  double supg = 0.25;
+  bool rotational = true;
+  double velocity_tolerance = 1e-5;
+  int width = 0;
+  void options(OptionGroup& option);
+};
+
+/// Semi-implicit incremental pressure correction in rotational form for the volume-averaged equations (Guermond, Minev
+/// & Shen 2006), BDF1 or variable-step BDF2 with extrapolated convecting velocity, equal-order P1 or Q1 elements.
+///
+/// One step: the velocity u~ from one scalar matrix shared by its components, with the pressure of the last step and
+/// the effect of the last corrections in its history; then the pressure increment from the continuity of the corrected
+/// superficial flux U~ - alpha k grad phi, stabilised by orthogonal subscales weighted with their own time scale. The
+/// particles enter both operators through void fraction and response. Formulas: docs/theory/pressure_correction.md.
+class PressureCorrection : public Fluid {
+ public:
+  PressureCorrection(const Mesh& mesh, Options& options, const FluidOptions& fluid, const Vec3& gravity);
+
+  FluidStep advance(double time, double dt) override;
+  double courant_rate() const override;
+  std::span<const double> velocity() const override { return velocity_; }
+  std::span<const double> velocity_change() const override { return velocity_change_; }
+  std::span<const double> pressure() const override { return pressure_; }
+  std::span<const double> pressure_gradient() const override { return pressure_gradient_; }
+  std::vector<BoundaryFlow> boundary_flow() const override;
+  std::vector<StateArray> state() override;
+
+ private:
+  /// The numbers of the last two steps; kept with the nodal arrays so that a restart finds them.
+  struct Past {
+    int steps = 0;                  ///< taken, up to 2
+    double dt = 0;                  ///< s, of the last step
+    double rate = 0, old_rate = 0;  ///< 1/s, gamma/dt of the last two steps
+  };
+  Past past() const;
+
+  void prepare(double time, double dt, const Past& past);
+  void set_momentum_terms();
+  void assemble_momentum();
+  void add_backflow();
+  std::vector<double> continuity(const std::vector<double>& u, std::vector<double>& divergence);
+  void assemble_pressure(const Past& past);
+  void check_balance(double flows, double volume_rate) const;
+  FluidStep report(double dt) const;
+  Vec3 boundary_reactions(std::vector<BoundaryFlow>& flows) const;
+
+  const Mesh& mesh_;
+  FluidOptions fluid_;
+  PressureCorrectionOptions scheme_;
+  Vec3 gravity_;
+  BoundaryConditions boundaries_;
+  VectorExpression body_force_expression_;
+  NodalGraph graph_;
+  CellLoops loops_;
+  NodalMatrix momentum_;
+  VelocitySolver velocity_solver_;
+  PressureSolver pressure_solver_;
+  std::vector<double> mass_;       ///< [nodes] m3, lumped
+  std::vector<double> node_size_;  ///< [nodes] m, shortest edge of the local cells around
+  bool has_body_force_ = false;
+
+  // The state: fields of step n, n-1 and of the corrections in between.
+  std::vector<double> velocity_, old_velocity_, pressure_, increment_, old_increment_;
+  std::vector<double> void_fraction_, old_void_fraction_, drag_, old_drag_;  ///< of the last two corrections
+  std::vector<double> pressure_gradient_, velocity_change_;
+  std::vector<double> past_;  ///< [nodes][4], Past at every node
+
+  // Of the present step.
+  bool porous_ = false, renew_ = true;
+  Bdf bdf_{};
+  double matrix_rate_ = 0;  ///< gamma/dt of the assembled pressure matrix
+  int matrix_age_ = 0;
+  std::vector<double> convecting_, history_, body_force_, force_density_, drag_now_, right_, solution_, flux_,
+      effective_;
+  std::vector<double> cell_values_;  ///< the arrays of CellCoefficients and the increment factors, one after the other
+  CellCoefficients cell_{};
+  double *increment_factor_ = nullptr, *old_increment_factor_ = nullptr, *scratch_[4] = {};
+  MomentumTerms terms_{};
+  std::vector<double> outflow_;  ///< [nodes] m3/s through the pressure boundaries, of the last step
+
+  struct OutletFacet {
+    const FacetRule* rule;
+    int entry[4][4];
+  };
+  std::vector<OutletFacet> outlets_;
+};
+
+std::unique_ptr<Fluid> make_pressure_correction(const Mesh& mesh, Options& options, const FluidOptions& fluid,
+                                                const Vec3& gravity);
+
+}  // namespace silt
