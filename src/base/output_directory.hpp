@@ -1,0 +1,41 @@
+#pragma once
+#include <string>
+
+#include "base/options.hpp"
+
+namespace silt {
+
+/// The options `-output_...` that say where and how.
+struct OutputOptions {
+  std::string directory = "output/run";
+  double interval = 0;
+  bool overwrite = true;
+  std::string precision = "double";
+  void options(OptionGroup& option);
+};
+
+/// Where a run writes. The rule about what is there already:
+///  - a directory that holds an earlier run of Silt (it has `run.yaml`): the files of that run are removed, any others
+///    stay; with `-output_overwrite no` the run is refused instead;
+///  - any other directory is used beside what it holds, unless a file in it bears one of our names: refused.
+class OutputDirectory {
+ public:
+  /// Checks that the directory can be made and written, leaving nothing behind. Throws UserError on every rank.
+  /// Collective.
+  explicit OutputDirectory(const OutputOptions& options);
+
+  /// Makes the directory, removes an earlier run and writes `run.yaml`, the record of this run. Throws UserError on
+  /// every rank. Collective.
+  void prepare(const std::string& record);
+
+  /// The place of a file of ours.
+  std::string path(const std::string& file) const { return options_.directory + "/" + file; }
+  const OutputOptions& options() const { return options_; }
+  bool single_precision() const { return options_.precision == "single"; }
+
+ private:
+  std::string obstacle() const;
+  OutputOptions options_;
+};
+
+}  // namespace silt
