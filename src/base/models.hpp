@@ -1,0 +1,37 @@
+#pragma once
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/options.hpp"
+
+namespace silt {
+
+/// A list of physical models among which the user picks one by name: `using Normal = Models<Linear, Tsuji>;`.
+/// A model has `static constexpr const char* name` and `void options(OptionGroup&)`; the list's line is its
+/// registration.
+template <class... Model>
+struct Models {
+  using Any = std::variant<Model...>;
+  static constexpr int count = sizeof...(Model);
+  static std::vector<std::string> names() { return {Model::name...}; }
+
+  /// Reads `-<prefix>_type` (default: `fallback`) and the options of the model chosen under `-<prefix>_...`.
+  static Any read(Options& options, const std::string& prefix, const std::string& fallback, const char* help) {
+    Choice choice{fallback, help};
+    options.read(prefix, choice);
+    Any chosen;
+    ((choice.type == Model::name ? void(chosen = Model{}) : void()), ...);
+    std::visit([&](auto& model) { options.read(prefix, model); }, chosen);
+    return chosen;
+  }
+
+ private:
+  struct Choice {
+    std::string type;
+    const char* help;
+    void options(OptionGroup& option) { option("type", type, names(), help); }
+  };
+};
+
+}  // namespace silt

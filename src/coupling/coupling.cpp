@@ -1,0 +1,282 @@
+#include "coupling/coupling.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace silt {
+namespace {
+
+/// Adds up some vectors and numbers over all ranks in one message.
+class GlobalSums {
+ public:
+  void add(Vec3& v) {
+    for (int d = 0; d < 3; ++d) add(v[d]);
+  }
+  void add(double& x) {
+    places_.push_back(&x);
+    values_.push_back(x);
+  }
+  void sum() {
+    MPI_Allreduce(MPI_IN_PLACE, values_.data(), static_cast<int>(values_.size()), MPI_DOUBLE, MPI_SUM,
+                  PETSC_COMM_WORLD);
+    for (std::size_t k = 0; k < values_.size(); ++k) *places_[k] = values_[k];
+  }
+
+ private:
+  std::vector<double*> places_;
+  std::vector<double> values_;
+};
+
+constexpr int load_components = 5;  // volume, response, impulse
+
+}  // namespace
+
+Coupling::Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options& options, const Vec3& gravity)
+    : mesh_(mesh),
+      particles_(particles),
+      fluid_(fluid),
+      gravity_(gravity),
+      locator_(mesh),
+      kernel_(mesh),
+      void_fraction_(mesh),
+      mass_(lumped_mass(mesh)) {
+  options.read("coupling", options_);
+  drag_ = DragModels::read(options, "drag", "gidaspow", "drag law of the particles");
+  if (mesh.dimension == 2) {
+    if (!options_.depth)
+      throw UserError("coupling_depth: give the thickness in m that the 2D mesh stands for; particles have a volume");
+    depth_ = *options_.depth;
+  }
+  start();
+}
+
+Coupling::~Coupling() = default;
+
+void Coupling::prepare_filter() {
+  double largest = 0;
+  for (int p = 0; p < particles_.owned(); ++p) largest = std::max(largest, 2 * particles_.radius(p));
+  largest = mpi_max(largest);
+  // A user's length does not depend on the particles; the automatic one follows a larger particle when it appears.
+  const bool changed = largest > diameter_ * (1 + 1e-9);
+  diameter_ = std::max(diameter_, largest);
+  if (filter_ && (options_.filter_length || !changed)) return;
+  filter_ = std::make_unique<Filter>(
+      mesh_, mass_,
+      options_.filter_length ? uniform_diffusivity(*options_.filter_length) : automatic_diffusivity(mesh_, diameter_));
+}
+
+void Coupling::place_particles() {
+  const int count = particles_.owned();
+  kernel_.resize(count);
+  bool outside = false;
+  for (int p = 0; p < count; ++p) {
+    const auto x = particles_.position(p);
+    const int hint = particles_.cell(p);
+    const Place place = locator_.find(x.data(), hint);
+    double xi[3];
+    if (place.inside()) {
+      kernel_.place(p, place.cell, place.xi.data());
+    } else if (hint >= 0 && locator_.reference(hint, x.data(), xi)) {
+      // A tie with a lower rank: the engine keeps it here until it looks again, and the weights of this cell are the
+      // same.
+      const bool near =
+          *std::min_element(xi, xi + mesh_.dimension) > -1e-6 && *std::max_element(xi, xi + mesh_.dimension) < 1 + 1e-6;
+      outside = outside || !near;
+      kernel_.place(p, hint, xi);
+    } else {
+      outside = true;
+      kernel_.place(p, 0, place.xi.data());
+    }
+  }
+  if (mpi_any(outside))
+    throw RunError("a particle lies in no cell of the rank that holds it: the coupling cannot place it");
+}
+
+void Coupling::start() {
+  prepare_filter();
+  place_particles();
+  const int count = particles_.owned();
+  at_particles_.resize(count);
+  nodal_.resize(mesh_.nodes);
+  for (int p = 0; p < count; ++p) at_particles_[p] = particles_.volume(p);
+  kernel_.deposit(at_particles_, nodal_, 1);
+  for (int i = 0; i < mesh_.nodes; ++i) nodal_[i] /= mass_[i] * depth_;
+  filter_->apply(nodal_.data(), 1);
+  void_fraction_.start(nodal_, options_.void_fraction_minimum);
+  const auto alpha = void_fraction_.previous();
+  std::copy(alpha.begin(), alpha.end(), fluid_.load().void_fraction.begin());
+}
+
+void Coupling::before_particles(double dt) {
+  place_particles();
+  const int count = particles_.owned();
+  const auto velocity = fluid_.velocity();
+  nodal_.assign(velocity.begin(), velocity.end());
+  filter_->apply(nodal_.data(), 3);
+  at_particles_.resize(4 * static_cast<std::size_t>(count));
+  const std::span<double> u(at_particles_.data(), 3 * static_cast<std::size_t>(count)),
+      alpha(u.data() + u.size(), count);
+  kernel_.sample(nodal_, u, 3);
+  kernel_.sample(void_fraction_.previous(), alpha, 1);
+
+  const double density = fluid_.density(), viscosity = fluid_.viscosity();
+  // Model B leaves the whole pressure gradient to the fluid; its drag is then that of model A over alpha (Zhou et al.
+  // 2010).
+  const bool model_a = fluid_.model_a();
+  // The static head acts on a particle by -V_p grad p when model A's pressure holds it, else here.
+  const bool buoyant = fluid_.reduced_pressure() || !model_a;
+  ledger_ = ExchangeLedger{};
+  exchanged_ = 0;
+  std::visit(
+      [&](const auto& law) {
+        for (int p = 0; p < count; ++p) {
+          FluidAction& action = particles_.fluid_action(p);
+          const auto v = particles_.velocity(p);
+          const double* w = &u[3 * p];
+          const double speed = (vec3(w) - v).norm();
+          const double k = law.exchange({2 * particles_.radius(p), alpha[p], density, viscosity, speed});
+          action.exchange = model_a ? k : k / alpha[p];
+          const double displaced = buoyant ? density * particles_.volume(p) : 0;
+          for (int d = 0; d < 3; ++d) {
+            action.velocity[d] = w[d];
+            action.force[d] = action.owed[d] / dt - displaced * gravity_[d];
+            action.impulse[d] = 0;
+            action.start_velocity[d] = v[d];
+            ledger_.delivered[d] += action.owed[d];
+            ledger_.buoyancy[d] -= displaced * gravity_[d] * dt;
+          }
+        }
+      },
+      drag_);
+}
+
+void Coupling::before_fluid(double dt) {
+  prepare_filter();
+  place_particles();
+  const int count = particles_.owned();
+  responses_.resize(count);
+  at_particles_.resize(load_components * static_cast<std::size_t>(count));
+  nodal_.resize(load_components * static_cast<std::size_t>(mesh_.nodes));
+  // With the static head in model B's pressure the fluid feels the reaction of the buoyancy it gives.
+  const double reaction = !fluid_.model_a() && !fluid_.reduced_pressure() ? fluid_.density() * dt : 0;
+  ledger_.particle_volume = 0;
+  ledger_.drag_on_particles.setZero();
+  ledger_.drag_on_fluid.setZero();
+  exchanged_ = 0;
+  for (int p = 0; p < count; ++p) {
+    FluidAction& action = particles_.fluid_action(p);
+    const double mass = particles_.mass(p), volume = particles_.volume(p);
+    const Vec3 force = vec3(action.force) + mass * gravity_;
+    const double h = held(vec3(action.start_velocity), particles_.velocity(p), vec3(action.velocity), force, mass,
+                          action.exchange, dt, action.held);
+    responses_[p] = response(mass, action.exchange, h, dt);
+    double* q = &at_particles_[load_components * static_cast<std::size_t>(p)];
+    q[0] = volume;
+    q[1] = responses_[p].mass;
+    for (int d = 0; d < 3; ++d) {
+      q[2 + d] = action.impulse[d] - reaction * volume * gravity_[d];
+      ledger_.drag_on_particles[d] += q[2 + d];
+    }
+    ledger_.particle_volume += volume;
+    exchanged_ += vec3(&q[2]).norm();
+  }
+  kernel_.deposit(at_particles_, nodal_, load_components);
+  for (int i = 0; i < mesh_.nodes; ++i) {
+    for (int c = 0; c < load_components; ++c) nodal_[load_components * i + c] /= mass_[i] * depth_;
+  }
+  filter_->apply(nodal_.data(), load_components);
+
+  ParticleLoad& load = fluid_.load();
+  std::vector<double>& solids = at_particles_;
+  solids.resize(mesh_.nodes);
+  for (int i = 0; i < mesh_.nodes; ++i) {
+    const double* f = &nodal_[load_components * static_cast<std::size_t>(i)];
+    solids[i] = f[0];
+    load.response[i] = mass_[i] * f[1] / dt;
+    for (int d = 0; d < 3; ++d) load.force[3 * i + d] = -mass_[i] * f[2 + d] / dt;
+  }
+  void_fraction_.advance(solids, dt, options_.void_fraction_minimum, load.void_fraction, load.void_fraction_rate);
+  for (int i = 0; i < mesh_.owned_nodes; ++i) ledger_.drag_on_fluid += depth_ * dt * vec3(&load.force[3 * i]);
+}
+
+void Coupling::after_fluid(double dt) {
+  const int count = kernel_.count();
+  const bool model_a = fluid_.model_a();
+  const int components = model_a ? 6 : 3;
+  const auto change = fluid_.velocity_change(), gradient = fluid_.pressure_gradient();
+  const ParticleLoad& load = fluid_.load();
+  nodal_.resize(components * static_cast<std::size_t>(mesh_.nodes));
+  for (int i = 0; i < mesh_.nodes; ++i) {
+    for (int d = 0; d < 3; ++d) {
+      nodal_[components * i + d] = change[3 * i + d];
+      if (model_a) nodal_[components * i + 3 + d] = gradient[3 * i + d];
+    }
+  }
+  for (int i = 0; i < mesh_.owned_nodes; ++i) {
+    const double solids = mass_[i] * (1 - load.void_fraction[i]) * depth_;
+    ledger_.deposited_volume += solids;
+    for (int d = 0; d < 3; ++d) {
+      ledger_.response_on_fluid[d] -= depth_ * dt * load.response[i] * change[3 * i + d];
+      if (model_a) ledger_.pressure_on_fluid[d] += dt * solids * gradient[3 * i + d];
+    }
+  }
+  filter_->apply(nodal_.data(), components);
+  at_particles_.resize(components * static_cast<std::size_t>(count));
+  kernel_.sample(nodal_, at_particles_, components);
+  for (int p = 0; p < count; ++p) {
+    FluidAction& action = particles_.fluid_action(p);
+    const double* f = &at_particles_[components * static_cast<std::size_t>(p)];
+    const Response& r = responses_[p];
+    const Vec3 owed = r.mass * vec3(f), at_once = (1 - r.held) * r.free * vec3(f);
+    Vec3 pressure = Vec3::Zero();
+    if (model_a) pressure = -particles_.volume(p) * dt * vec3(f + 3);
+    action.held = r.held;
+    vec3(action.owed) = owed - at_once + pressure;
+    particles_.kick(p, at_once);
+    ledger_.response_on_particles += owed;
+    ledger_.pressure_on_particles += pressure;
+    ledger_.given_at_once += at_once;
+    ledger_.in_transit += vec3(action.owed);
+    exchanged_ += owed.norm() + pressure.norm();
+  }
+  void_fraction_.commit(load.void_fraction);
+
+  GlobalSums sums;
+  for (Vec3* v : {&ledger_.drag_on_particles, &ledger_.drag_on_fluid, &ledger_.response_on_particles,
+                  &ledger_.response_on_fluid, &ledger_.pressure_on_particles, &ledger_.pressure_on_fluid,
+                  &ledger_.buoyancy, &ledger_.given_at_once, &ledger_.delivered, &ledger_.in_transit}) {
+    sums.add(*v);
+  }
+  sums.add(ledger_.particle_volume);
+  sums.add(ledger_.deposited_volume);
+  sums.add(exchanged_);
+  sums.sum();
+  const double imbalance = std::max({(ledger_.drag_on_particles + ledger_.drag_on_fluid).norm(),
+                                     (ledger_.response_on_particles + ledger_.response_on_fluid).norm(),
+                                     (ledger_.pressure_on_particles + ledger_.pressure_on_fluid).norm()});
+  ledger_.residual = exchanged_ > 0 ? imbalance / exchanged_ : 0;
+  if (ledger_.particle_volume > 0) {
+    ledger_.residual = std::max(ledger_.residual,
+                                std::abs(ledger_.deposited_volume - ledger_.particle_volume) / ledger_.particle_volume);
+  }
+  if (!(ledger_.residual <= exchange_tolerance)) {
+    throw RunError(fmt::format(
+        "the exchange between fluid and particles is out of balance by {:.3g} of what was exchanged, allowed {:.0e}",
+        ledger_.residual, exchange_tolerance));
+  }
+}
+
+std::string Coupling::description() const {
+  const std::string law = std::visit([](const auto& chosen) { return std::string(chosen.name); }, drag_);
+  const std::string width = options_.filter_length
+                                ? fmt::format("length {:.4g} m", *options_.filter_length)
+                                : fmt::format("two diameters ({:.4g} m), at least two cells", 2 * diameter_);
+  return fmt::format("drag {}, model {}, filter {} in {} passes", law, fluid_.model_a() ? "A" : "B", width,
+                     filter_->passes());
+}
+
+}  // namespace silt

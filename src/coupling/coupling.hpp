@@ -1,0 +1,102 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/locator.hpp"
+#include "base/mesh.hpp"
+#include "base/options.hpp"
+#include "coupling/drag/drag_models.hpp"
+#include "coupling/exchange.hpp"
+#include "coupling/filter.hpp"
+#include "coupling/kernel.hpp"
+#include "coupling/void_fraction.hpp"
+#include "fluid/fluid.hpp"
+#include "particles/particles.hpp"
+
+namespace silt {
+
+/// The options `-coupling_...`.
+struct CouplingOptions {
+  std::optional<double> filter_length;
+  double void_fraction_minimum = 0.2;
+  std::optional<double> depth;
+  void options(OptionGroup& option) {
+    option("filter_length", filter_length, "m",
+           "length l by which what a particle does to the fluid is spread: a Gaussian of variance 2 l^2 in each "
+           "direction, so two standard "
+           "deviations are 2.83 l; 0: the cell's shape functions alone. By default two standard deviations are two "
+           "particle diameters, "
+           "and never less than two cells",
+           non_negative);
+    option("void_fraction_minimum", void_fraction_minimum, "-", "void fraction below which the run stops",
+           Range{0, 1, true, true});
+    option("depth", depth, "m",
+           "thickness that a 2D mesh stands for; the particles' volume and forces are spread over it", positive);
+  }
+};
+
+/// The exchange of volume and momentum between fluid and particles over one fluid step:
+///
+///     coupling.before_particles(dt);  particles.advance(t, dt);
+///     coupling.before_fluid(dt);      fluid.advance(t, dt);
+///     coupling.after_fluid(dt);
+///
+/// Particles go first, with the fluid velocity u^n: the drag impulse I_p that each received is summed. The fluid then
+/// has the source -sum_p w_i I_p/dt and the linearised rest -response_i (u^{n+1} - u^n)_i; and each particle is owed
+/// for that rest exactly J_p = K_p dt (u^{n+1} - u^n)(x_p). What particles give and take goes through the same weights
+/// and the same filter in both directions, so action equals reaction to round-off whatever K_p is (exchange.hpp says
+/// what it is). The pressure-gradient impulse of the fluid's step and the part of J_p that contacts must carry are
+/// given as a force over the particles' next step.
+class Coupling {
+ public:
+  /// Reads `-coupling_...` and `-drag_...`. Collective.
+  Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options& options, const Vec3& gravity);
+  ~Coupling();
+
+  /// Takes alpha from where the particles are now, as the start of the first step (or after a restart, or after
+  /// particles were added outside a step). Collective.
+  void start();
+
+  /// Samples u^n at the particles and sets their FluidAction. Collective.
+  void before_particles(double dt);
+  /// Sets the fluid's ParticleLoad from where the particles are and what drag gave them. May be repeated with another
+  /// fluid state. Collective.
+  void before_fluid(double dt);
+  /// Settles the rest with the particles and closes the step. Throws RunError on all ranks when the exchange is out of
+  /// balance. Collective.
+  void after_fluid(double dt);
+
+  /// The last step's exchange, complete after after_fluid().
+  const ExchangeLedger& ledger() const { return ledger_; }
+  /// One line for the header of the run: filter, drag law.
+  std::string description() const;
+  const Filter& filter() const { return *filter_; }
+  const std::vector<double>& mass() const { return mass_; }
+
+ private:
+  void place_particles();
+  void prepare_filter();
+
+  const Mesh& mesh_;
+  Particles& particles_;
+  Fluid& fluid_;
+  Vec3 gravity_;
+  CouplingOptions options_;
+  DragModels::Any drag_;
+  double depth_ = 1;     ///< m, thickness of a 2D mesh
+  double diameter_ = 0;  ///< m, largest so far: what the automatic filter was made for
+  Locator locator_;
+  Kernel kernel_;
+  VoidFraction void_fraction_;
+  std::vector<double> mass_;  ///< [nodes] m3 (m2 in 2D)
+  std::unique_ptr<Filter> filter_;
+  ExchangeLedger ledger_;
+  double exchanged_ = 0;  ///< N s, sum of the magnitudes exchanged in this step: the scale of the residual
+  std::vector<double> nodal_, at_particles_;
+  std::vector<Response> responses_;
+};
+
+}  // namespace silt

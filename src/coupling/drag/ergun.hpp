@@ -1,0 +1,20 @@
+#pragma once
+#include <algorithm>
+
+#include "base/options.hpp"
+#include "coupling/drag/flow_around.hpp"
+
+namespace silt {
+
+/// Packed bed, Ergun (1952): beta = 150 (1-a)^2 mu / (a d^2) + 1.75 (1-a) rho |u-v| / d, k = V_p beta / (1-a)  (7.98).
+struct ErgunDrag {
+  static constexpr const char* name = "ergun";
+  void options(OptionGroup&) {}
+  double exchange(const FlowAround& flow) const {
+    const double d = flow.diameter, volume = std::numbers::pi / 6 * d * d * d;
+    return volume * (150 * (1 - flow.void_fraction) * flow.viscosity / (flow.void_fraction * d * d) +
+                     1.75 * flow.density * flow.speed / d);
+  }
+};
+
+}  // namespace silt

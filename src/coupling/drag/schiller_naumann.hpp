@@ -1,0 +1,15 @@
+#pragma once
+#include "base/options.hpp"
+#include "coupling/drag/flow_around.hpp"
+
+namespace silt {
+
+/// A single sphere: C_D = 24/Re (1 + 0.15 Re^0.687), 0.44 above Re = 1000 (Schiller & Naumann 1935). No effect of
+/// neighbours.
+struct SchillerNaumannDrag {
+  static constexpr const char* name = "schiller_naumann";
+  void options(OptionGroup&) {}
+  double exchange(const FlowAround& flow) const { return flow.stokes() * schiller_naumann_factor(flow.reynolds()); }
+};
+
+}  // namespace silt

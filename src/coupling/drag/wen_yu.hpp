@@ -1,0 +1,17 @@
+#pragma once
+#include "base/options.hpp"
+#include "coupling/drag/flow_around.hpp"
+
+namespace silt {
+
+/// Fluidised suspension, Wen & Yu (1966): beta = 3/4 C_D a (1-a) rho |u-v| / d a^-2.65, k = V_p beta / (1-a), C_D of
+/// Schiller & Naumann at Re = a rho d |u-v| / mu  (7.99).
+struct WenYuDrag {
+  static constexpr const char* name = "wen_yu";
+  void options(OptionGroup&) {}
+  double exchange(const FlowAround& flow) const {
+    return flow.stokes() * schiller_naumann_factor(flow.superficial_reynolds()) * std::pow(flow.void_fraction, -2.65);
+  }
+};
+
+}  // namespace silt
