@@ -71,13 +71,17 @@ class Fluid {
   /// Flow and force per boundary, in the order of Mesh::boundaries. Collective.
   virtual std::vector<BoundaryFlow> boundary_flow() const = 0;
 
-  /// Every array that a restart needs, by name: [nodes][components], read and written by the checkpoint.
+  /// Every array that a restart needs, by name, read and written by the checkpoint: [nodes][components], or
+  /// [cells][components] when `on_cells`.
   struct StateArray {
     std::string name;
     std::vector<double>* values;
     int components;
+    bool on_cells = false;
   };
   virtual std::vector<StateArray> state() = 0;
+  /// To be called after the arrays of state() were overwritten. Collective.
+  virtual void restored() {}
 
  protected:
   ParticleLoad load_;
