@@ -20,7 +20,7 @@ constexpr const char* record_name = "run.yaml";
 /// What a run writes into its directory: nothing else is ever removed.
 bool is_ours(const fs::path& relative) {
   static const std::regex pattern(
-      R"((run\.yaml|fluid\.xdmf|particles\.xdmf|diagnostics\.csv|ledger\.csv|removed\.csv|expectations\.csv|)"
+      R"((run\.yaml|fluid\.xdmf|particles\.xdmf|(diagnostics|boundaries|ledger)\.csv|(removed|expectations)\.csv|)"
       R"((probe|line|profile|wall)_.*\.csv|(fluid|particles)/(mesh|\d{6,})\.h5)(\.part)?)");
   return std::regex_match(relative.generic_string(), pattern);
 }

@@ -1,0 +1,105 @@
+#include "app/budget.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace silt {
+namespace {
+
+void add_columns(std::vector<std::string>& columns, std::initializer_list<const char*> vectors) {
+  for (const char* name : vectors)
+    for (char axis : {'x', 'y', 'z'}) columns.push_back(fmt::format("{}_{}", name, axis));
+}
+
+void add(std::vector<double>& row, const Vec3& v) { row.insert(row.end(), {v[0], v[1], v[2]}); }
+
+}  // namespace
+
+void LedgerOptions::options(OptionGroup& option) {
+  option("tolerance", tolerance, "-", "relative residual of the conservation ledger above which the run stops",
+         positive);
+}
+
+Budget::Budget(Options& options, bool with_fluid, bool with_particles)
+    : with_fluid_(with_fluid), with_particles_(with_particles) {
+  options.read("ledger", options_);
+}
+
+void Budget::start(const OutputDirectory& directory, const Fluid* fluid, Particles* particles) {
+  std::vector<std::string> columns = {"time",           "residual",     "exchange_residual", "particle_residual",
+                                      "taken_residual", "mass_residual"};
+  if (with_fluid_) add_columns(columns, {"fluid_momentum", "boundary_impulse", "unaccounted"});
+  if (with_particles_)
+    add_columns(columns, {"particle_momentum", "gravity", "walls", "drag", "fluid_force", "kicks", "added", "removed"});
+  if (with_fluid_ && with_particles_) {
+    add_columns(columns, {"drag_on_fluid", "response_on_fluid", "pressure_on_fluid", "in_transit"});
+    columns.insert(columns.end(), {"particle_volume", "deposited_volume"});
+  }
+  table_ = CsvWriter(directory.path("ledger.csv"), columns);
+  fluid_known_ = fluid == nullptr;
+  if (particles) {
+    particle_momentum_ = particles->momentum();
+    particles->take_impulses();
+  }
+}
+
+double Budget::close(const Moment& moment, Particles* particles, const ExchangeLedger* exchange) {
+  const double exchange_residual = exchange ? exchange->residual : 0;
+  double particle_residual = 0, taken_residual = 0;
+  Particles::Impulses in;
+  Vec3 momentum = Vec3::Zero();
+  if (particles) {
+    in = particles->take_impulses();
+    momentum = particles->momentum();
+    const Vec3 sum = in.gravity + in.walls + in.drag + in.fluid_force + in.kicks + in.added + in.removed;
+    double scale = std::sqrt(2 * particles->total_mass() * particles->kinetic_energy());
+    for (const Vec3* v : {&in.gravity, &in.walls, &in.drag, &in.fluid_force, &in.kicks, &in.added, &in.removed})
+      scale += v->norm();
+    scale = std::max(scale, 1e-300);
+    particle_residual = (momentum - particle_momentum_ - sum).norm() / scale;
+    // A particle that left during the step took with it what it was owed: that is in its removal.
+    if (exchange && in.removed.norm() == 0)
+      taken_residual =
+          std::max({(in.drag - exchange->drag_on_particles).norm(), (in.kicks - exchange->given_at_once).norm(),
+                    (in.fluid_force - exchange->delivered - exchange->buoyancy).norm()}) /
+          scale;
+  }
+  const double residual = std::max({exchange_residual, particle_residual, taken_residual});
+  std::vector<double> row = {moment.time,       residual,       exchange_residual,
+                             particle_residual, taken_residual, with_fluid_ ? moment.fluid_step.mass_residual : 0};
+  if (with_fluid_) {
+    const Vec3 through = moment.dt * moment.fluid_step.boundary_force;
+    Vec3 unaccounted = Vec3::Zero();
+    if (fluid_known_) {
+      unaccounted = moment.fluid_step.momentum - fluid_momentum_ - through;
+      if (exchange) unaccounted -= exchange->drag_on_fluid + exchange->response_on_fluid + exchange->pressure_on_fluid;
+    }
+    fluid_momentum_ = moment.fluid_step.momentum;
+    fluid_known_ = true;
+    add(row, fluid_momentum_);
+    add(row, through);
+    add(row, unaccounted);
+  }
+  if (with_particles_)
+    for (const Vec3& v : {momentum, in.gravity, in.walls, in.drag, in.fluid_force, in.kicks, in.added, in.removed})
+      add(row, v);
+  if (with_fluid_ && with_particles_) {
+    const ExchangeLedger none, &e = exchange ? *exchange : none;
+    for (const Vec3& v : {e.drag_on_fluid, e.response_on_fluid, e.pressure_on_fluid, e.in_transit}) add(row, v);
+    row.insert(row.end(), {e.particle_volume, e.deposited_volume});
+  }
+  particle_momentum_ = momentum;
+  table_.row(row);
+  if (!(residual <= options_.tolerance))
+    throw RunError(
+        fmt::format("the ledger is out of balance at t = {:g} s: residual {:.3g} (exchange {:.3g}, particles "
+                    "{:.3g}, taken {:.3g}), allowed {:g} (-ledger_tolerance)",
+                    moment.time, residual, exchange_residual, particle_residual, taken_residual, options_.tolerance));
+  return residual;
+}
+
+}  // namespace silt

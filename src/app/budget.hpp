@@ -1,0 +1,45 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "app/moment.hpp"
+#include "base/csv.hpp"
+#include "base/output_directory.hpp"
+#include "coupling/exchange.hpp"
+
+namespace silt {
+
+/// The options `-ledger_...`.
+struct LedgerOptions {
+  double tolerance = 1e-10;
+  void options(OptionGroup& option);
+};
+
+/// The conservation ledger, `ledger.csv`, a row a step (N s unless said otherwise):
+///  - exchange_residual: largest imbalance between what fluid and particles gave each other and of the particle volume
+///    in the void fraction, relative to the magnitudes that were summed (ExchangeLedger);
+///  - particle_residual: |change of the particles' momentum - impulses of gravity, walls, drag, other fluid forces,
+///    kicks, insertion and removal|, relative to those impulses and to sqrt(2 M E), the size of the momenta summed;
+///  - taken_residual: what the particles say they received from the fluid against what the coupling gave, same scale;
+///  - mass_residual: the fluid's volume balance as the fluid reports it, relative to its inflow;
+///  - unaccounted_*: change of the fluid's momentum less the impulses through the boundary and of the particles; it
+///    holds the time scheme's and the stabilisation's share and is no residual.
+/// The first three above `-ledger_tolerance` stop the run.
+class Budget {
+ public:
+  Budget(Options& options, bool with_fluid, bool with_particles);
+  /// Opens the file and takes the starting momenta. Collective.
+  void start(const OutputDirectory& directory, const Fluid* fluid, Particles* particles);
+  /// Closes the account of the step that led to `moment`: writes a row and returns the largest of the gated residuals.
+  /// `exchange` is null without coupling. Throws RunError on every rank when out of balance. Collective.
+  double close(const Moment& moment, Particles* particles, const ExchangeLedger* exchange);
+
+ private:
+  LedgerOptions options_;
+  bool with_fluid_, with_particles_;
+  CsvWriter table_;
+  Vec3 particle_momentum_ = Vec3::Zero(), fluid_momentum_ = Vec3::Zero();
+  bool fluid_known_ = false;
+};
+
+}  // namespace silt

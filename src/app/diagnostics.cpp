@@ -1,0 +1,194 @@
+#include "app/diagnostics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/nodal_matrix.hpp"
+
+namespace silt {
+namespace {
+
+const std::vector<std::string> step_columns = {"time", "dt", "step", "ledger_residual"};
+const std::vector<std::string> fluid_columns = {"courant",
+                                                "velocity_iterations",
+                                                "pressure_iterations",
+                                                "newton_iterations",
+                                                "mass_residual",
+                                                "pressure_drop",
+                                                "inflow",
+                                                "outflow",
+                                                "fluid_kinetic_energy",
+                                                "largest_fluid_speed",
+                                                "least_void_fraction",
+                                                "mean_void_fraction",
+                                                "fluid_velocity_x",
+                                                "fluid_velocity_y",
+                                                "fluid_velocity_z"};
+const std::vector<std::string> particle_columns = {"particles",
+                                                   "removed",
+                                                   "substeps",
+                                                   "contacts",
+                                                   "largest_overlap",
+                                                   "bed_height",
+                                                   "bed_height_95",
+                                                   "bed_solids",
+                                                   "particle_kinetic_energy",
+                                                   "particle_rotational_energy",
+                                                   "largest_particle_speed",
+                                                   "particle_position_x",
+                                                   "particle_position_y",
+                                                   "particle_position_z",
+                                                   "particle_velocity_x",
+                                                   "particle_velocity_y",
+                                                   "particle_velocity_z"};
+const std::vector<std::string> flow_columns = {"volume_flow", "pressure", "force_x", "force_y", "force_z"};
+
+constexpr int height_bins = 1024;
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+double facet_area(const Mesh& mesh, const BoundaryFacet& facet) {
+  const auto x = mesh.facet_corners(facet);
+  if (mesh.dimension == 2) return (x[1] - x[0]).norm();
+  const double half = 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
+  return mesh.cell == Cell::tetrahedron ? half : half + 0.5 * (x[2] - x[0]).cross(x[3] - x[0]).norm();
+}
+
+}  // namespace
+
+Diagnostics::Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity, bool with_fluid, bool with_particles)
+    : mesh_(mesh),
+      up_(gravity.norm() > 0 ? Vec3(-gravity.normalized()) : Vec3::Unit(mesh.dimension - 1)),
+      with_fluid_(with_fluid),
+      with_particles_(with_particles),
+      columns_(step_columns) {
+  if (with_fluid) append(columns_, fluid_columns);
+  if (with_particles) append(columns_, particle_columns);
+  bottom_ = 0;
+  double top = 0;
+  for (int d = 0; d < 3; ++d) {
+    bottom_ += std::min(up_[d] * mesh.lower[d], up_[d] * mesh.upper[d]);
+    top += std::max(up_[d] * mesh.lower[d], up_[d] * mesh.upper[d]);
+  }
+  height_ = top - bottom_;
+  if (!with_fluid) return;
+  mass_ = lumped_mass(mesh);
+  area_.assign(mesh.boundaries.size(), 0.0);
+  for (const auto& facet : mesh.facets) area_[facet.boundary] += facet_area(mesh, facet);
+  for (double& area : area_) area = mpi_sum(area);
+  boundary_columns_ = {"time"};
+  for (const auto& name : mesh.boundaries) {
+    for (const auto& column : flow_columns) boundary_columns_.push_back(name + "." + column);
+    const std::string type = options.find("boundary_" + name + "_type").value_or("");
+    role_.push_back(type == "velocity" || type == "mass_flow" ? 1 : type == "pressure" ? -1 : 0);
+  }
+}
+
+std::vector<std::string> Diagnostics::columns() const {
+  std::vector<std::string> all = columns_;
+  if (!boundary_columns_.empty()) all.insert(all.end(), boundary_columns_.begin() + 1, boundary_columns_.end());
+  return all;
+}
+
+void Diagnostics::start(const OutputDirectory& directory) {
+  table_ = CsvWriter(directory.path("diagnostics.csv"), columns_);
+  if (!boundary_columns_.empty()) boundary_table_ = CsvWriter(directory.path("boundaries.csv"), boundary_columns_);
+}
+
+void Diagnostics::sample(const Moment& moment, Quantities& quantities) {
+  std::vector<double> row = {moment.time, moment.dt, static_cast<double>(moment.step), moment.ledger_residual};
+  std::vector<double> flows = {moment.time};
+  if (with_fluid_) measure_fluid(moment, row, flows);
+  if (with_particles_) {
+    const ParticleStep& step = moment.particle_step;
+    for (double value : {static_cast<double>(moment.particles->total()), static_cast<double>(step.removed),
+                         static_cast<double>(step.substeps), static_cast<double>(step.contacts), step.largest_overlap})
+      row.push_back(value);
+    measure_particles(*moment.particles, row);
+  }
+  for (size_t k = 0; k < row.size(); ++k) quantities.set(columns_[k], row[k]);
+  for (size_t k = 1; k < flows.size(); ++k) quantities.set(boundary_columns_[k], flows[k]);
+  table_.row(row);
+  if (flows.size() > 1) boundary_table_.row(flows);
+}
+
+void Diagnostics::measure_fluid(const Moment& moment, std::vector<double>& row, std::vector<double>& flows) const {
+  const Fluid& fluid = *moment.fluid;
+  const auto u = fluid.velocity();
+  const auto& alpha = fluid.load().void_fraction;
+  double fastest = 0, least = 1;
+  std::array<double, 5> sum{};  // kinetic energy / rho, int alpha, int alpha u
+  for (int i = 0; i < mesh_.owned_nodes; ++i) {
+    const Map<const Vec3> v = vec3(&u[3 * static_cast<size_t>(i)]);
+    const double share = mass_[i] * alpha[i], square = v.squaredNorm();
+    sum[0] += 0.5 * share * square;
+    sum[1] += share;
+    for (int d = 0; d < 3; ++d) sum[2 + d] += share * v[d];
+    fastest = std::max(fastest, square);
+    least = std::min(least, alpha[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sum.data(), sum.size(), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+
+  const auto boundary = fluid.boundary_flow();
+  double given = 0, given_area = 0, outlet = 0, outlet_area = 0, high = -infinity, low = infinity, in = 0, out = 0;
+  for (size_t b = 0; b < boundary.size(); ++b) {
+    const BoundaryFlow& flow = boundary[b];
+    (flow.volume_flow < 0 ? in : out) += std::abs(flow.volume_flow);
+    high = std::max(high, flow.mean_pressure);
+    low = std::min(low, flow.mean_pressure);
+    (role_[b] > 0 ? given : outlet) += role_[b] == 0 ? 0 : area_[b] * flow.mean_pressure;
+    (role_[b] > 0 ? given_area : outlet_area) += role_[b] == 0 ? 0 : area_[b];
+    for (double value : {flow.volume_flow, flow.mean_pressure, flow.force[0], flow.force[1], flow.force[2]})
+      flows.push_back(value);
+  }
+  const double drop = given_area > 0 && outlet_area > 0 ? given / given_area - outlet / outlet_area
+                      : boundary.empty()                ? 0
+                                                        : high - low;
+  const FluidStep& step = moment.fluid_step;
+  for (double value : {step.courant, static_cast<double>(step.velocity_iterations),
+                       static_cast<double>(step.pressure_iterations), static_cast<double>(step.newton_iterations),
+                       step.mass_residual, drop, in, out, fluid.density() * sum[0], std::sqrt(mpi_max(fastest)),
+                       mpi_min(least), sum[1] / mesh_.volume, sum[2] / sum[1], sum[3] / sum[1], sum[4] / sum[1]})
+    row.push_back(value);
+}
+
+void Diagnostics::measure_particles(const Particles& particles, std::vector<double>& row) const {
+  // Sums: volume, mass, mass x, mass v; then the volume by height.
+  std::vector<double> sum(8 + height_bins, 0.0);
+  double fastest = 0;
+  for (int i = 0; i < particles.owned(); ++i) {
+    const double volume = particles.volume(i), mass = particles.mass(i);
+    const Vec3 x = particles.position(i), v = particles.velocity(i);
+    sum[0] += volume;
+    sum[1] += mass;
+    for (int d = 0; d < 3; ++d) {
+      sum[2 + d] += mass * x[d];
+      sum[5 + d] += mass * v[d];
+    }
+    const int bin = static_cast<int>(height_bins * (up_.dot(x) - bottom_) / height_);
+    sum[8 + std::clamp(bin, 0, height_bins - 1)] += volume;
+    fastest = std::max(fastest, v.squaredNorm());
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sum.data(), static_cast<int>(sum.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  const double mass = std::max(sum[1], 1e-300);
+  const Vec3 centre = Vec3(sum[2], sum[3], sum[4]) / mass, velocity = Vec3(sum[5], sum[6], sum[7]) / mass;
+  const double bed = sum[1] > 0 ? 2 * (up_.dot(centre) - bottom_) : 0;
+  double below = 0, height_95 = 0;
+  for (int k = 0; k < height_bins && below < 0.95 * sum[0]; ++k) {
+    const double share = std::min(1.0, (0.95 * sum[0] - below) / std::max(sum[8 + k], 1e-300));
+    height_95 = height_ * (k + share) / height_bins;
+    below += sum[8 + k];
+  }
+  const double solids = bed > 0 ? sum[0] / (mesh_.volume / height_ * bed) : 0;
+  for (double value :
+       {bed, height_95, solids, particles.kinetic_energy(), particles.rotational_energy(), std::sqrt(mpi_max(fastest)),
+        centre[0], centre[1], centre[2], velocity[0], velocity[1], velocity[2]})
+    row.push_back(value);
+}
+
+}  // namespace silt

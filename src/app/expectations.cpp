@@ -1,0 +1,211 @@
+#include "app/expectations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+
+#include "app/probes.hpp"
+#include "app/profiles.hpp"
+#include "base/error.hpp"
+#include "base/hdf5_file.hpp"
+
+namespace silt {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+double interpolate(const std::vector<double>& times, const std::vector<double>& values, double at) {
+  const double slack = 1e-9 * std::max(1e-300, std::abs(at));
+  if (times.empty() || at < times.front() - slack || at > times.back() + slack) return unknown;
+  const auto above = std::lower_bound(times.begin(), times.end(), at);
+  if (above == times.begin()) return values.front();
+  if (above == times.end()) return values.back();
+  const auto k = static_cast<size_t>(above - times.begin());
+  const double share = (at - times[k - 1]) / (times[k] - times[k - 1]);
+  return (1 - share) * values[k - 1] + share * values[k];
+}
+
+/// Mean over time by the trapezoidal rule.
+double mean(const std::vector<double>& times, const std::vector<double>& values) {
+  if (values.size() < 2) return values.empty() ? unknown : values[0];
+  double sum = 0;
+  for (size_t k = 1; k < values.size(); ++k) sum += 0.5 * (values[k] + values[k - 1]) * (times[k] - times[k - 1]);
+  return sum / (times.back() - times.front());
+}
+
+double frequency(const std::vector<double>& times, const std::vector<double>& values) {
+  const double middle = mean(times, values);
+  std::vector<double> crossings;
+  for (size_t k = 1; k < values.size(); ++k)
+    if (values[k - 1] < middle && values[k] >= middle)
+      crossings.push_back(times[k - 1] +
+                          (middle - values[k - 1]) / (values[k] - values[k - 1]) * (times[k] - times[k - 1]));
+  if (crossings.size() < 2) return unknown;
+  return static_cast<double>(crossings.size() - 1) / (crossings.back() - crossings.front());
+}
+
+Expectations::Verdict judged(const ExpectationOptions& options, double expected, double computed, double difference) {
+  const double size = options.mode == "relative" ? std::abs(expected) : 1;
+  double error = std::abs(difference) / size;
+  if (options.mode == "at_least") error = std::max(0.0, expected - computed);
+  if (options.mode == "at_most") error = std::max(0.0, computed - expected);
+  if (std::isnan(computed)) error = unknown;
+  return {expected, computed, error, error <= options.tolerance.value_or(0)};
+}
+
+std::string quoted(std::string text) {
+  for (size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) text.insert(at, 1, '"');
+  return fmt::format("\"{}\"", text);
+}
+
+}  // namespace
+
+void ExpectationOptions::options(OptionGroup& option) {
+  option("quantity", quantity,
+         "what is compared: a column of diagnostics.csv, <boundary>.<column>, <probe>.<column>, "
+         "<line>.<column> or <profile>.<column>");
+  option("value", value, "", "figure expected, in the quantity's unit times the factor");
+  option("values", values, "", "figures expected at the points of a line or profile");
+  option("tolerance", tolerance, "", "largest error allowed", non_negative);
+  option("mode", mode, {"relative", "absolute", "at_least", "at_most"},
+         "how the error is taken; at_least and at_most: only what falls short or exceeds counts");
+  option("statistic", statistic, {"last", "mean", "minimum", "maximum", "amplitude", "frequency"},
+         "what is taken over the window; without window: of the whole run");
+  option("at", at, "s", "time at which the quantity is taken, interpolated between steps");
+  option("window", window, "s", "from, to: stretch of time over which the statistic (default: mean) is taken");
+  option("factor", factor, "-", "what the computed figure is multiplied with before it is compared");
+  option("source", source, "where the expected figure comes from");
+}
+
+Expectations::Expectations(Options& options, const std::vector<std::string>& through_time,
+                           const std::vector<std::string>& along_lines) {
+  for (const auto& name : options.names("expect", Options::declared<ExpectationOptions>())) {
+    const std::string prefix = "expect_" + name;
+    if (case_.empty()) {
+      const std::string origin = options.origin(prefix + "_quantity");
+      case_ = origin.find(':') == std::string::npos
+                  ? "case"
+                  : std::filesystem::path(origin.substr(0, origin.rfind(':'))).stem().string();
+    }
+    Item item{name, {}, false, {}, {}};
+    options.read(prefix, item.options);
+    const auto& given = item.options;
+    const auto has = [&](const std::vector<std::string>& list) {
+      return std::find(list.begin(), list.end(), given.quantity) != list.end();
+    };
+    item.along = has(along_lines);
+    if (!item.along && !has(through_time)) {
+      std::vector<std::string> all = through_time;
+      all.insert(all.end(), along_lines.begin(), along_lines.end());
+      const std::string hint = nearest(given.quantity, all);
+      throw UserError(
+          fmt::format("-{}_quantity: '{}' is not a quantity of this case{}", prefix, given.quantity,
+                      hint.empty() ? "; see the columns of diagnostics.csv and the names of probes, lines and profiles"
+                                   : fmt::format(", did you mean {}?", hint)));
+    }
+    if (given.value.has_value() == !given.values.empty())
+      throw UserError(fmt::format("-{}: one of value and values must be given", prefix));
+    if (!given.values.empty() && !item.along)
+      throw UserError(fmt::format("-{}_values: '{}' is one number, use value", prefix, given.quantity));
+    if (!given.tolerance) throw UserError(fmt::format("-{}_tolerance must be given", prefix));
+    if (!given.window.empty() && (given.window.size() != 2 || given.window[0] >= given.window[1]))
+      throw UserError(fmt::format("-{}_window must be two increasing times in s", prefix));
+    if (given.at && !given.window.empty())
+      throw UserError(fmt::format("-{}: at and window exclude each other", prefix));
+    if (given.mode == "relative" && given.value && *given.value == 0)
+      throw UserError(fmt::format("-{}: a relative error from 0 has no meaning, use mode: absolute", prefix));
+    items_.push_back(std::move(item));
+  }
+}
+
+void Expectations::sample(double time, const Quantities& quantities) {
+  for (auto& item : items_) {
+    if (item.along) continue;
+    if (const auto value = quantities.find(item.options.quantity)) {
+      item.times.push_back(time);
+      item.values.push_back(*value);
+    }
+  }
+}
+
+Expectations::Verdict Expectations::verdict(const ExpectationOptions& options, const std::vector<double>& times,
+                                            const std::vector<double>& values) {
+  double computed = unknown;
+  if (options.at) {
+    computed = interpolate(times, values, *options.at);
+  } else if (!values.empty()) {
+    std::vector<double> t, v;
+    for (size_t k = 0; k < times.size(); ++k)
+      if (options.window.empty() ||
+          (times[k] >= options.window[0] * (1 - 1e-9) && times[k] <= options.window[1] * (1 + 1e-9))) {
+        t.push_back(times[k]);
+        v.push_back(values[k]);
+      }
+    const bool covered = options.window.empty() || times.back() >= options.window[1] * (1 - 1e-9);
+    const std::string statistic = !options.statistic.empty() ? options.statistic
+                                  : options.window.empty()   ? "last"
+                                                             : "mean";
+    if (covered && !v.empty()) {
+      const auto [low, high] = std::minmax_element(v.begin(), v.end());
+      computed = statistic == "mean"        ? mean(t, v)
+                 : statistic == "minimum"   ? *low
+                 : statistic == "maximum"   ? *high
+                 : statistic == "amplitude" ? 0.5 * (*high - *low)
+                 : statistic == "frequency" ? frequency(t, v)
+                                            : v.back();
+    }
+  }
+  computed *= options.factor;
+  return judged(options, *options.value, computed, computed - *options.value);
+}
+
+Expectations::Verdict Expectations::verdict_along(const ExpectationOptions& options,
+                                                  const std::vector<double>& values) {
+  if (values.empty()) return judged(options, options.value.value_or(0), unknown, unknown);
+  const double count = static_cast<double>(values.size());
+  const double average = options.factor * std::accumulate(values.begin(), values.end(), 0.0) / count;
+  if (options.value) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const double computed = options.statistic == "minimum"   ? options.factor * *low
+                            : options.statistic == "maximum" ? options.factor * *high
+                                                             : average;
+    return judged(options, *options.value, computed, computed - *options.value);
+  }
+  const double expected = std::accumulate(options.values.begin(), options.values.end(), 0.0) / options.values.size();
+  if (options.values.size() != values.size()) return judged(options, expected, unknown, unknown);
+  double difference = 0;
+  for (size_t k = 0; k < values.size(); ++k)
+    difference += std::abs(options.factor * values[k] - options.values[k]) / count;
+  return judged(options, expected, average, difference);
+}
+
+bool Expectations::judge(const OutputDirectory& directory, const Probes& probes, const Profiles& profiles) const {
+  if (items_.empty()) return true;
+  bool all = true;
+  std::string table = "case,name,quantity,expected,computed,error,tolerance,mode,result,source\n";
+  for (const auto& item : items_) {
+    std::vector<double> along;
+    if (item.along) {
+      along = probes.line(item.options.quantity);
+      if (along.empty()) along = profiles.values(item.options.quantity);
+    }
+    const Verdict v = item.along ? verdict_along(item.options, along) : verdict(item.options, item.times, item.values);
+    all = all && v.pass;
+    const char* result = v.pass ? "PASS" : "FAIL";
+    if (mpi_rank() == 0)
+      fmt::print("{} {} {:.6g} {:.6g} {:.3g} {:.3g} {}\n", case_, item.name, v.expected, v.computed, v.error,
+                 *item.options.tolerance, result);
+    table += fmt::format("{},{},{},{:.9g},{:.9g},{:.4g},{:.4g},{},{},{}\n", case_, item.name, item.options.quantity,
+                         v.expected, v.computed, v.error, *item.options.tolerance, item.options.mode, result,
+                         quoted(item.options.source));
+  }
+  std::fflush(stdout);
+  write_text(directory.path("expectations.csv"), table);
+  return all;
+}
+
+}  // namespace silt

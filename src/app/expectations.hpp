@@ -1,0 +1,68 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/moment.hpp"
+#include "base/output_directory.hpp"
+
+namespace silt {
+
+class Probes;
+class Profiles;
+
+/// `-expect_<name>_...`: a figure that the run must give.
+struct ExpectationOptions {
+  std::string quantity;
+  std::optional<double> value;
+  std::vector<double> values;
+  std::optional<double> tolerance;
+  std::string mode = "relative";
+  std::string statistic;
+  std::optional<double> at;
+  std::vector<double> window;
+  double factor = 1;
+  std::string source;
+  void options(OptionGroup& option);
+};
+
+/// The figures a case carries. A quantity is a column of diagnostics.csv, `<boundary>.<column>` of boundaries.csv,
+/// `<probe>.<column>`, or, along a line or profile, `<line>.<column>` and `<profile>.<column>`.
+///
+/// Through time: the value `at` a time (interpolated), or a `statistic` over a `window`: mean, minimum, maximum,
+/// amplitude (half of maximum less minimum), frequency (upward crossings of the mean, Hz); without either the last one.
+/// Along a line: the mean absolute difference from `values`, or the mean (minimum, maximum) against `value`.
+class Expectations {
+ public:
+  /// Reads the options; `through_time` and `along_lines` are the quantities there are. Throws UserError with the
+  /// nearest name for an unknown one.
+  Expectations(Options& options, const std::vector<std::string>& through_time,
+               const std::vector<std::string>& along_lines);
+  bool empty() const { return items_.empty(); }
+  /// Takes note of what is expected. Local.
+  void sample(double time, const Quantities& quantities);
+  /// Prints a line for each figure, `case name expected computed error tolerance PASS|FAIL`, and writes
+  /// `expectations.csv`; true when all are met. Collective.
+  bool judge(const OutputDirectory& directory, const Probes& probes, const Profiles& profiles) const;
+
+  /// Computed figure and error of one expectation, from a history or from values along a line.
+  struct Verdict {
+    double expected, computed, error;
+    bool pass;
+  };
+  static Verdict verdict(const ExpectationOptions& options, const std::vector<double>& times,
+                         const std::vector<double>& values);
+  static Verdict verdict_along(const ExpectationOptions& options, const std::vector<double>& values);
+
+ private:
+  struct Item {
+    std::string name;
+    ExpectationOptions options;
+    bool along;
+    std::vector<double> times, values;
+  };
+  std::string case_;
+  std::vector<Item> items_;
+};
+
+}  // namespace silt

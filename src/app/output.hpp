@@ -1,0 +1,40 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "app/moment.hpp"
+#include "base/mesh.hpp"
+#include "base/series.hpp"
+
+namespace silt {
+
+/// The series that ParaView opens, `fluid.xdmf` and `particles.xdmf`, written at the start, every
+/// `-output_interval` and at the end.
+class Output {
+ public:
+  /// Reads `-output_...` and checks the directory; writes nothing. Collective.
+  Output(const Mesh& mesh, Options& options, bool with_fluid, bool with_particles);
+  /// Makes the directory, with `record` (the options of the run, YAML) in it. Collective.
+  void start(const std::string& record);
+  const OutputDirectory& directory() const { return *directory_; }
+
+  /// First time of output after `time`, infinity when there is none but the end.
+  double next(double time) const;
+  /// True when an output belongs to this time: one of the instants k interval.
+  bool due(double time) const;
+  /// Writes both series unless this moment's output is written already. Collective.
+  void write(const Moment& moment);
+
+ private:
+  const Mesh& mesh_;
+  bool with_fluid_, with_particles_;
+  std::unique_ptr<OutputDirectory> directory_;
+  std::unique_ptr<FluidSeries> fluid_;
+  std::unique_ptr<ParticleSeries> particles_;
+  double last_ = -1;
+};
+
+/// Every declared option with its value in this run, as YAML that a run can be repeated from.
+std::string record_of(const Options& options);
+
+}  // namespace silt

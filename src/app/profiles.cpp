@@ -1,0 +1,146 @@
+#include "app/profiles.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "base/csv.hpp"
+#include "base/error.hpp"
+#include "base/hdf5_file.hpp"
+
+namespace silt {
+namespace {
+
+const std::vector<std::string> names = {"void_fraction", "particle_velocity_x", "particle_velocity_y",
+                                        "particle_velocity_z"};
+constexpr size_t width = 4;
+
+/// Points of equal weight in the unit ball: eight shells of equal volume, each with 64 directions on a golden spiral.
+const std::array<Vec3, 512>& ball_points() {
+  static const std::array<Vec3, 512> points = [] {
+    std::array<Vec3, 512> result;
+    constexpr int shells = 8, directions = 64;
+    for (int s = 0; s < shells; ++s) {
+      const double radius = std::cbrt((s + 0.5) / shells);
+      for (int k = 0; k < directions; ++k) {
+        const double height = 1 - (2 * k + 1.0) / directions, across = std::sqrt(1 - height * height);
+        const double angle = (k + 0.37 * s) * M_PI * (3 - std::sqrt(5.0));
+        result[s * directions + k] = radius * Vec3(across * std::cos(angle), across * std::sin(angle), height);
+      }
+    }
+    return result;
+  }();
+  return points;
+}
+
+}  // namespace
+
+double share_in_box(const Vec3& centre, double radius, const Vec3& lower, const Vec3& upper) {
+  const Vec3 below = centre - lower, above = upper - centre;
+  const double inside = std::min(below.minCoeff(), above.minCoeff());
+  if (inside >= radius) return 1;
+  if (inside <= -radius) return 0;
+  int count = 0;
+  for (const Vec3& point : ball_points()) {
+    const Vec3 x = centre + radius * point;
+    count += (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
+  }
+  return count / 512.0;
+}
+
+void ProfileOptions::options(OptionGroup& option) {
+  option("from", from, "m", "centre of the first box over which particles are averaged");
+  option("to", to, "m", "centre of the last box");
+  option("size", size, "m", "extent of every box");
+  option("points", points, "-", "number of boxes", at_least(1));
+  option("start", start, "s", "time from which the average is taken", non_negative);
+}
+
+Profiles::Profiles(const Mesh& mesh, Options& options, bool with_particles) {
+  for (const auto& name : options.names("profile", Options::declared<ProfileOptions>())) {
+    ProfileOptions profile;
+    options.read("profile_" + name, profile);
+    if (!with_particles) throw UserError("-profile_... averages particles, and the case has none (-insertion_...)");
+    if (!(profile.size.head(mesh.dimension).minCoeff() > 0))
+      throw UserError(fmt::format("-profile_{}_size must be given: three positive lengths in m", name));
+    Item item{name, profile.start, {}, {}, 0, {}};
+    for (int k = 0; k < profile.points; ++k) {
+      Box box;
+      box.centre = profile.from;
+      if (profile.points > 1) box.centre += (profile.to - profile.from) * k / (profile.points - 1.0);
+      box.lower = (box.centre - 0.5 * profile.size).cwiseMax(mesh.lower);
+      box.upper = (box.centre + 0.5 * profile.size).cwiseMin(mesh.upper);
+      if (mesh.dimension == 2) {
+        box.lower[2] = -0.5 * profile.size[2];
+        box.upper[2] = 0.5 * profile.size[2];
+      }
+      box.volume = (box.upper - box.lower).prod();
+      if (!((box.upper - box.lower).minCoeff() > 0))
+        throw UserError(fmt::format("-profile_{}: the box at ({:g}, {:g}, {:g}) lies outside the mesh", name,
+                                    box.centre[0], box.centre[1], box.centre[2]));
+      item.boxes.push_back(box);
+    }
+    item.sums.assign(width * item.boxes.size(), 0.0);
+    items_.push_back(std::move(item));
+  }
+}
+
+void Profiles::sample(const Moment& moment) {
+  for (auto& item : items_) {
+    if (moment.time < item.start || moment.dt <= 0) continue;
+    item.time += moment.dt;
+    const Particles& particles = *moment.particles;
+    for (int i = 0; i < particles.owned(); ++i) {
+      const Vec3 x = particles.position(i), v = particles.velocity(i);
+      for (size_t b = 0; b < item.boxes.size(); ++b) {
+        const double share = share_in_box(x, particles.radius(i), item.boxes[b].lower, item.boxes[b].upper);
+        if (share <= 0) continue;
+        const double weight = share * particles.volume(i) * moment.dt;
+        double* sum = &item.sums[width * b];
+        sum[0] += weight;
+        for (int d = 0; d < 3; ++d) sum[1 + d] += weight * v[d];
+      }
+    }
+  }
+}
+
+void Profiles::write(const OutputDirectory& directory) {
+  for (auto& item : items_) {
+    std::vector<double> sums(item.sums.size());
+    MPI_Allreduce(item.sums.data(), sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    std::string text = "distance,x,y,z";
+    for (const auto& name : names) text += "," + name;
+    text += "\n";
+    item.means.clear();
+    for (size_t b = 0; b < item.boxes.size(); ++b) {
+      const Box& box = item.boxes[b];
+      const double* sum = &sums[width * b];
+      item.means.push_back(item.time > 0 ? 1 - sum[0] / (box.volume * item.time) : std::nan(""));
+      for (int d = 0; d < 3; ++d) item.means.push_back(sum[0] > 0 ? sum[1 + d] / sum[0] : 0);
+      text += csv_number((box.centre - item.boxes[0].centre).norm());
+      for (int d = 0; d < 3; ++d) text += "," + csv_number(box.centre[d]);
+      for (size_t c = 0; c < width; ++c) text += "," + csv_number(item.means[width * b + c]);
+      text += "\n";
+    }
+    write_text(directory.path("profile_" + item.name + ".csv"), text);
+  }
+}
+
+std::vector<std::string> Profiles::columns() const {
+  std::vector<std::string> all;
+  for (const auto& item : items_)
+    for (const auto& name : names) all.push_back(item.name + "." + name);
+  return all;
+}
+
+std::vector<double> Profiles::values(const std::string& column) const {
+  std::vector<double> result;
+  for (const auto& item : items_)
+    for (size_t c = 0; c < width; ++c)
+      if (item.name + "." + names[c] == column)
+        for (size_t k = c; k < item.means.size(); k += width) result.push_back(item.means[k]);
+  return result;
+}
+
+}  // namespace silt

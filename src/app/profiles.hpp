@@ -1,0 +1,55 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "app/moment.hpp"
+#include "base/mesh.hpp"
+#include "base/output_directory.hpp"
+
+namespace silt {
+
+/// `-profile_<name>_...`: boxes along a line over which the particles are averaged in space and time.
+struct ProfileOptions {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero(), size = Vec3::Zero();
+  int points = 20;
+  double start = 0;
+  void options(OptionGroup& option);
+};
+
+/// Averages of the particles in boxes, from the spheres themselves: `profile_<name>.csv`, rewritten at every output.
+///
+/// The void fraction of a box is 1 - (volume of the spheres inside it)/(volume of the box within the mesh's bounding
+/// box); a sphere that the box cuts counts with the part inside, found by 512 points of equal volume. Velocities are
+/// means by volume over boxes and time.
+class Profiles {
+ public:
+  Profiles(const Mesh& mesh, Options& options, bool with_particles);
+  /// Adds the present state, weighted with the step's length, to the averages. Local.
+  void sample(const Moment& moment);
+  /// Writes the averages so far. Collective.
+  void write(const OutputDirectory& directory);
+  /// `<profile>.<column>` of every profile.
+  std::vector<std::string> columns() const;
+  /// The averages along a profile as last written; empty when there is no such `<profile>.<column>`.
+  std::vector<double> values(const std::string& column) const;
+
+ private:
+  struct Box {
+    Vec3 centre, lower, upper;
+    double volume;
+  };
+  struct Item {
+    std::string name;
+    double start;
+    std::vector<Box> boxes;
+    std::vector<double> sums;   ///< [boxes][4] this rank's int (volume, volume velocity) dt
+    double time = 0;            ///< s averaged over
+    std::vector<double> means;  ///< [boxes][4] void fraction, velocity
+  };
+  std::vector<Item> items_;
+};
+
+/// Share of a sphere's volume that lies in the box [lower, upper].
+double share_in_box(const Vec3& centre, double radius, const Vec3& lower, const Vec3& upper);
+
+}  // namespace silt
