@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "fluid/fluid_options.hpp"
+#include "fluid/monolithic.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
 
 namespace silt {
@@ -13,7 +14,7 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
   for (const char* name : {"fluid_density", "fluid_viscosity"})
     if (!options.given(name)) throw UserError(std::string("-") + name + " is missing: the fluid needs it");
   if (fluid.scheme == "pressure_correction") return make_pressure_correction(mesh, options, fluid, gravity);
-  throw UserError("-fluid_scheme " + fluid.scheme + " is not available in this build");
+  return make_monolithic(mesh, options, fluid, gravity);
 }
 
 }  // namespace silt

@@ -9,13 +9,13 @@
 
 namespace silt {
 
-/// What the particles do to the fluid during the coming step, at the mesh nodes (consistent on shared nodes). The coupling
-/// fills it before every advance(); without particles alpha is 1 and the rest 0.
+/// What the particles do to the fluid during the coming step, at the mesh nodes (consistent on shared nodes). The
+/// coupling fills it before every advance(); without particles alpha is 1 and the rest 0.
 struct ParticleLoad {
   std::vector<double> void_fraction;       ///< [nodes] alpha at the end of the step
   std::vector<double> void_fraction_rate;  ///< [nodes] 1/s, (alpha^{n+1} - alpha^n)/dt
-  std::vector<double> force;               ///< [nodes][3] N, load vector: what the particles push the fluid with (-sum_p w_i I_p/dt)
-  std::vector<double> response;            ///< [nodes] kg/s: sum_p w_i K_p; the fluid feels -response (u^{n+1} - u^n)
+  std::vector<double> force;  ///< [nodes][3] N, load vector: what the particles push the fluid with (-sum_p w_i I_p/dt)
+  std::vector<double> response;  ///< [nodes] kg/s: sum_p w_i K_p; the fluid feels -response (u^{n+1} - u^n)
   explicit ParticleLoad(int nodes = 0)
       : void_fraction(nodes, 1.0), void_fraction_rate(nodes, 0.0), force(3 * nodes, 0.0), response(nodes, 0.0) {}
 };
@@ -23,24 +23,25 @@ struct ParticleLoad {
 /// What one fluid step took and left, for the progress line, the diagnostics and the ledger.
 struct FluidStep {
   int velocity_iterations = 0, pressure_iterations = 0, newton_iterations = 0;
-  double courant = 0;              ///< largest |u| dt / h
-  double mass_residual = 0;        ///< m3/s: inflow - outflow - d/dt int alpha, relative to the inflow (or to 1 when closed)
-  Vec3 momentum = Vec3::Zero();    ///< kg m/s, int alpha rho u at the end of the step
-  Vec3 boundary_force = Vec3::Zero();  ///< N, pressure, viscous and convective momentum flux through the boundary (into the fluid)
+  double courant = 0;        ///< largest |u| dt / h
+  double mass_residual = 0;  ///< m3/s: inflow - outflow - d/dt int alpha, relative to the inflow (or to 1 when closed)
+  Vec3 momentum = Vec3::Zero();  ///< kg m/s, int alpha rho u at the end of the step
+  Vec3 boundary_force =
+      Vec3::Zero();  ///< N, pressure, viscous and convective momentum flux through the boundary (into the fluid)
 };
 
 /// Volume flow and force per named boundary.
 struct BoundaryFlow {
-  double volume_flow = 0;      ///< m3/s, int alpha u.n, positive out
-  double mean_pressure = 0;    ///< Pa
-  Vec3 force = Vec3::Zero();   ///< N, force of the fluid on the boundary
+  double volume_flow = 0;     ///< m3/s, int alpha u.n, positive out
+  double mean_pressure = 0;   ///< Pa
+  Vec3 force = Vec3::Zero();  ///< N, force of the fluid on the boundary
 };
 
 /// The carrier phase on a mesh. Implementations: PressureCorrection, Monolithic. The flow never sees a particle.
 class Fluid {
  public:
-  /// Reads `-fluid_...` and `-boundary_<name>_...`; refuses a boundary without a condition. Null for `-fluid_type none`.
-  /// Collective.
+  /// Reads `-fluid_...` and `-boundary_<name>_...`; refuses a boundary without a condition. Null for `-fluid_type
+  /// none`. Collective.
   static std::unique_ptr<Fluid> create(const Mesh& mesh, Options& options, const Vec3& gravity);
   virtual ~Fluid() = default;
 
@@ -66,19 +67,24 @@ class Fluid {
   virtual std::span<const double> velocity_change() const = 0;
   /// [nodes] Pa.
   virtual std::span<const double> pressure() const = 0;
-  /// [nodes][3] Pa/m, the adjoint of the discrete -alpha grad p of the last step: sum_i M_i (1 - alpha_i) g_i = int (1 - alpha_h) grad p_h with the
-  /// lumped mass M, so that the pressure force on the particles balances the fluid's to round-off.
+  /// [nodes][3] Pa/m, the adjoint of the discrete -alpha grad p of the last step: sum_i M_i (1 - alpha_i) g_i = int (1
+  /// - alpha_h) grad p_h with the lumped mass M, so that the pressure force on the particles balances the fluid's to
+  /// round-off.
   virtual std::span<const double> pressure_gradient() const = 0;
   /// Flow and force per boundary, in the order of Mesh::boundaries. Collective.
   virtual std::vector<BoundaryFlow> boundary_flow() const = 0;
 
-  /// Every array that a restart needs, by name: [nodes][components], read and written by the checkpoint.
+  /// Every array that a restart needs, by name, read and written by the checkpoint: [nodes][components], or
+  /// [cells][components] when `on_cells`.
   struct StateArray {
     std::string name;
     std::vector<double>* values;
     int components;
+    bool on_cells = false;
   };
   virtual std::vector<StateArray> state() = 0;
+  /// To be called after the arrays of state() were overwritten. Collective.
+  virtual void restored() {}
 
  protected:
   ParticleLoad load_;

@@ -114,7 +114,7 @@ void BoundaryConditions::find_nodes() {
       }
       if (condition.type == BoundaryType::slip)
         for (int m = 0; m < 6; m++) slip_normals[6 * static_cast<std::size_t>(i) + m] += t[4 + m];
-      const int rank = 2 * static_cast<int>(condition.type) + condition.moving;
+      const int rank = strength(b);
       if (rank < best[i]) {
         best[i] = rank;
         velocity_boundary_[i] = b;
@@ -167,6 +167,20 @@ void BoundaryConditions::evaluate(double time, const double* void_fraction) {
     if (pressure_boundary_[i] >= 0)
       pressure_[i] = (*conditions_[pressure_boundary_[i]].pressure)(vec3(&mesh_.node_coordinates[3 * i]), time);
   add_flow(time);
+}
+
+Vec3 BoundaryConditions::prescribed(int b, const Vec3& x, const Vec3& normal, double time,
+                                    double void_fraction) const {
+  const auto& condition = conditions_[b];
+  Vec3 value = Vec3::Zero();
+  if (condition.type == BoundaryType::velocity)
+    value = (*condition.velocity)(x, time) / void_fraction;
+  else if (condition.type == BoundaryType::mass_flow)
+    value = normal * (-(*condition.mass_flow)(Vec3::Zero(), time) / (density_ * areas_[b] * void_fraction));
+  else if (condition.moving)
+    value = (*condition.velocity)(x, time);
+  if (mesh_.dimension == 2) value.z() = 0;
+  return value;
 }
 
 void BoundaryConditions::add_flow(double time) {

@@ -66,6 +66,11 @@ class BoundaryConditions {
   /// Evaluates every condition at time t; void_fraction [nodes] turns the superficial velocities given into
   /// interstitial ones (null: 1).
   void evaluate(double time, const double* void_fraction);
+  /// Interstitial velocity that boundary b prescribes at a point that is no vertex (0 for slip and pressure), with its
+  /// outward normal and void fraction there.
+  Vec3 prescribed(int b, const Vec3& x, const Vec3& normal, double time, double void_fraction) const;
+  /// Order among conditions that meet: the smaller wins.
+  int strength(int b) const { return 2 * static_cast<int>(conditions_[b].type) + conditions_[b].moving; }
   /// [nodes][3] m/s, interstitial velocity prescribed by the last evaluate(); 0 where nothing is.
   const std::vector<double>& velocity() const { return velocity_; }
   /// [nodes] Pa, prescribed by the last evaluate(); 0 where nothing is.

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""Runs the verification cases and keeps the page of their figures; started by scripts/verify."""
+import argparse
+import os
+import re
+import subprocess
+import sys
+import time
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+PAGE = os.path.join(ROOT, "docs", "verification.md")
+FOLDERS = ("inputs", "inputs/verification", "tests/cases")
+# case quantity expected computed error tolerance PASS|FAIL
+FIGURE = re.compile(r"^(\S+) (\S+) (\S+) (\S+) (\S+) (\S+) (PASS|FAIL)\s*$", re.M)
+HEAD = """# Verification
+
+Made by `scripts/verify`; do not edit. Each case is an options file that carries its expected figures and their sources
+under `expect:`; the solver itself compares. An error is relative unless the case says otherwise.
+
+| case | quantity | expected | computed | error | tolerance | verdict | Silt |
+|---|---|---|---|---|---|---|---|
+"""
+
+
+class Case:
+    """An options file with `expect:`; its header may say `# short` and `# ranks: N`."""
+
+    def __init__(self, path):
+        self.path = path
+        self.name = os.path.splitext(os.path.basename(path))[0]
+        text = open(os.path.join(ROOT, path)).read()
+        self.expects = re.search(r"^expect:", text, re.M) is not None
+        self.short = re.search(r"^#\s*short\s*$", text, re.M) is not None
+        ranks = re.search(r"^#\s*ranks:\s*(\d+)\s*$", text, re.M)
+        self.ranks = int(ranks.group(1)) if ranks else None
+
+
+def find_cases():
+    cases = []
+    for folder in FOLDERS:
+        full = os.path.join(ROOT, folder)
+        names = sorted(os.listdir(full)) if os.path.isdir(full) else []
+        cases += [Case(os.path.join(folder, name)) for name in names if name.endswith(".yaml")]
+    return [case for case in cases if case.expects]
+
+
+def run(silt, case, ranks):
+    """Rows (case, quantity, expected, computed, error, tolerance, verdict) of one case."""
+    output = os.path.join(ROOT, "output", "verification", case.name)
+    command = [silt, case.path, "-output_directory", output]
+    if ranks > 1:
+        command = ["mpiexec", "-n", str(ranks)] + command
+    started = time.time()
+    done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    rows = [(case.name,) + match[1:] for match in FIGURE.findall(done.stdout)]
+    failed = any(row[-1] == "FAIL" for row in rows)
+    if done.returncode != 0 and not failed or not rows:
+        # The run itself went wrong: that is a failure of the case whatever figures came before it.
+        print("\n".join(f"  | {line}" for line in done.stdout.splitlines()[-15:]))
+        rows.append((case.name, "run", "complete", f"exit_{done.returncode}" if rows or done.returncode else "no_figures", "-", "-", "FAIL"))
+    for row in rows:
+        print(*row)
+    print(f"  ({case.name}: {time.time() - started:.0f} s, {ranks} rank{'s' if ranks > 1 else ''})", flush=True)
+    return rows
+
+
+def read_page():
+    """Rows of the page as it is: (case, ..., verdict, version)."""
+    if not os.path.exists(PAGE):
+        return []
+    rows = [tuple(cell.strip() for cell in line.strip().strip("|").split("|")) for line in open(PAGE) if line.startswith("| ")]
+    return [row for row in rows if len(row) == 8 and row[0] != "case"]
+
+
+def write_page(rows):
+    os.makedirs(os.path.dirname(PAGE), exist_ok=True)
+    with open(PAGE, "w") as page:
+        page.write(HEAD)
+        for row in rows:
+            page.write("| " + " | ".join(row) + " |\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("silt")
+    parser.add_argument("pattern", nargs="?", default="")
+    parser.add_argument("--short", action="store_true")
+    parser.add_argument("--list", action="store_true")
+    parser.add_argument("-n", "--ranks", type=int, default=0)
+    arguments = parser.parse_args()
+
+    known = find_cases()
+    cases = [case for case in known if arguments.pattern in case.name and (case.short or not arguments.short)]
+    if arguments.list:
+        for case in cases:
+            print(case.path, "short" if case.short else "")
+        return 0
+    if not cases and (arguments.pattern or not arguments.short):
+        print(f"verify: error: no case matches '{arguments.pattern}'; there are: {' '.join(case.name for case in known)}", file=sys.stderr)
+        return 2
+    twice = {case.name for case in known if sum(other.name == case.name for other in known) > 1}
+    if twice:
+        print(f"verify: error: two cases bear the name {', '.join(sorted(twice))}", file=sys.stderr)
+        return 2
+
+    default_ranks = 1 if arguments.short else min(2, os.cpu_count() or 1)
+    rows = []
+    for case in cases:
+        rows += run(arguments.silt, case, arguments.ranks or case.ranks or default_ranks)
+    passed = sum(row[-1] == "PASS" for row in rows)
+    if not arguments.short:
+        version = subprocess.run([arguments.silt, "-version"], stdout=subprocess.PIPE, text=True).stdout.split()[1]
+        ran = {case.name for case in cases}
+        order = [case.name for case in known]
+        kept = [row for row in read_page() if row[0] not in ran and row[0] in order]
+        write_page(sorted(kept + [row + (version,) for row in rows], key=lambda row: order.index(row[0])))
+    print(f"{passed} passed, {len(rows) - passed} failed")
+    return 0 if passed == len(rows) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

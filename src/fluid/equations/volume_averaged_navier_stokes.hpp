@@ -1,0 +1,113 @@
+#pragma once
+#include "base/dual.hpp"
+
+namespace silt {
+
+/// What stays the same over all points of a step. SI units.
+struct FlowParameters {
+  double density = 1, viscosity = 1;
+  double gravity[3] = {0, 0, 0};
+  double time_coefficient = 0;              ///< 1/s, factor of u^{n+1} in du/dt (BDF1: 1/dt, BDF2: 1.5/dt)
+  double supg = 1, pspg = 1, grad_div = 1;  ///< factors of the stabilisation terms; 0 for the plain Galerkin form
+  double continuity_scale =
+      1;  ///< kg/(m2 s), factor of the continuity rows that makes them comparable to the momentum rows
+  bool model_a = true;
+  bool load_as_density =
+      false;  ///< the particles' load enters the weak form as a density (Taylor-Hood), not as a nodal vector
+};
+
+/// The given fields at one point.
+template <class T, int dim>
+struct FlowCoefficients {
+  T alpha, alpha_rate;  ///< void fraction, its rate (1/s)
+  T grad_alpha[dim];    ///< 1/m
+  T history[dim];       ///< m/s2, the part of du/dt that is known
+  T velocity_old[dim];  ///< m/s, u^n
+  T body[dim];          ///< N/m3, given force
+  T load[dim];          ///< N/m3, density of the particles' force
+  T response;           ///< kg/(m3 s), density of the particles' response
+  T h;                  ///< m, shortest edge of the cell
+};
+
+/// The unknowns at one point. `flux_divergence` is div(alpha u)_h, alpha u being interpolated from its nodal products,
+/// so that a uniform superficial velocity through a changing alpha is represented exactly.
+template <class S, int dim>
+struct FlowState {
+  S velocity[dim], velocity_gradient[dim][dim];  ///< [i][j] = d u_i / d x_j
+  S pressure, pressure_gradient[dim];
+  S flux_divergence;
+  static constexpr int size = dim + dim * dim + 1 + dim + 1;
+};
+
+/// The integrands: row (a, i) of the momentum equation is
+/// int N_a momentum_i + sum_j dN_a/dx_j stress_ij + w_a dN_a/dx_i pressure_stress, with w_a = alpha_a (model A) or 1
+/// (model B); row a of the continuity equation is int N_a continuity + sum_j dN_a/dx_j flux_j.
+template <class S, int dim>
+struct FlowResidual {
+  S momentum[dim], stress[dim][dim];
+  S pressure_stress;
+  S continuity, flux[dim];
+};
+
+/// Volume-averaged incompressible Navier-Stokes equations, rho constant:
+///   alpha rho (du/dt + u.grad u) - div(alpha mu (grad u + grad u^T)) + alpha grad p = alpha rho g + f   (model A;
+///   model B: grad p) d(alpha)/dt + div(alpha u) = 0
+/// with the residual-based variational multiscale terms SUPG, PSPG and grad-div. The term alpha grad p is tested in the
+/// form -int p div(alpha v)_h, the adjoint of the continuity equation: it does the work int p d(alpha)/dt exactly, and
+/// at a free boundary the pressure is a natural traction. Time scale tau after Tezduyar & Osawa (2000):
+///   1/tau^2 = (2 alpha rho |u|/h)^2 + (12 alpha mu/h^2)^2 + (alpha rho c/dt + beta)^2;
+/// in SUPG only beta stands in the last bracket. tau is differentiated with the rest: the Jacobian is exact.
+template <int dim>
+struct VolumeAveragedNavierStokes {
+  template <class S, class T>
+  static void residual(const FlowState<S, dim>& state, const FlowCoefficients<T, dim>& at, const FlowParameters& k,
+                       FlowResidual<S, dim>& out) {
+    const T mass = at.alpha * k.density;
+    const T shear = at.alpha * k.viscosity;
+    const T pressure_factor = k.model_a ? at.alpha : at.alpha * 0.0 + 1.0;
+
+    S strong[dim];
+    for (int i = 0; i < dim; ++i) {
+      S acceleration = state.velocity[i] * (T{} + k.time_coefficient) + at.history[i];
+      for (int j = 0; j < dim; ++j) acceleration += state.velocity[j] * state.velocity_gradient[i][j];
+      // In model A gravity is tested like the pressure gradient (row (a, i) gets
+      // -int w_a N_a rho g_i in the cell loop), so that the static head balances it.
+      const S galerkin = acceleration * mass - T(mass * (k.model_a ? 0.0 : k.gravity[i]) + at.body[i]);
+      const S particles = (state.velocity[i] - at.velocity_old[i]) * at.response - at.load[i];
+      out.momentum[i] = k.load_as_density ? galerkin + particles : galerkin;
+      strong[i] = galerkin + particles + state.pressure_gradient[i] * pressure_factor -
+                  T(mass * (k.model_a ? k.gravity[i] : 0.0));
+    }
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) {
+        const S rate = state.velocity_gradient[i][j] + state.velocity_gradient[j][i];
+        out.stress[i][j] = rate * shear;
+        // Second derivatives of the velocity are left out: zero for P1, of higher order for Q1 and P2.
+        strong[i] -= rate * T(at.grad_alpha[j] * k.viscosity);
+      }
+    out.pressure_stress = -state.pressure;
+    const S divergence = state.flux_divergence + at.alpha_rate;
+    out.continuity = divergence * (T{} + k.continuity_scale);
+    for (int j = 0; j < dim; ++j) out.flux[j] = S(T{});
+    if (k.supg == 0 && k.pspg == 0 && k.grad_div == 0) return;
+
+    S speed_squared = state.velocity[0] * state.velocity[0];
+    for (int i = 1; i < dim; ++i) speed_squared += state.velocity[i] * state.velocity[i];
+    const T convection = 2.0 * mass / at.h;
+    const T diffusion = 12.0 * shear / (at.h * at.h);
+    const T inertia = mass * k.time_coefficient + at.response;
+    const S steady = speed_squared * T(convection * convection) + T(diffusion * diffusion);
+    const T one = T{} + 1.0;
+    const S tau_momentum = one / square_root(S(steady + T(at.response * at.response)));
+    const S tau_pressure = one / square_root(S(steady + T(inertia * inertia)));
+    for (int j = 0; j < dim; ++j) {
+      out.flux[j] = tau_pressure * strong[j] * T(at.alpha * (k.pspg * k.continuity_scale));
+      const S weight = tau_momentum * state.velocity[j] * T(mass * k.supg);
+      for (int i = 0; i < dim; ++i) out.stress[i][j] += weight * strong[i];
+    }
+    const S bulk = square_root(steady) * divergence * T(at.h * at.h * (0.25 * k.grad_div) / at.alpha);
+    for (int i = 0; i < dim; ++i) out.stress[i][i] += bulk;
+  }
+};
+
+}  // namespace silt

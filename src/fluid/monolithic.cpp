@@ -1,0 +1,363 @@
+#include "fluid/monolithic.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "fluid/assembly/flow_table.hpp"
+
+namespace silt {
+namespace {
+
+/// Void fraction, gradient and so on never divide by less than this; the coupling keeps alpha well above it.
+constexpr double least_alpha = 1e-6;
+
+MonolithicOptions read_options(Options& options) {
+  MonolithicOptions result;
+  options.read("fluid", result);
+  return result;
+}
+
+}  // namespace
+
+void MonolithicOptions::options(OptionGroup& option) {
+  option("element", element, {"equal_order", "taylor_hood"},
+         "equal_order: linear velocity and pressure, stabilised; taylor_hood: quadratic velocity, linear pressure");
+  option("supg", supg, "-", "factor of the streamline term; by default 1 for equal_order, 0 for taylor_hood",
+         non_negative);
+  option("pspg", pspg, "-", "factor of the pressure stabilisation; by default 1 for equal_order, 0 for taylor_hood",
+         non_negative);
+  option("grad_div", grad_div, "-", "factor of the grad-div term; by default 1 for equal_order, 0 for taylor_hood",
+         non_negative);
+}
+
+Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& fluid, const Vec3& gravity)
+    : mesh_(mesh),
+      options_(read_options(options)),
+      boundary_(mesh, options, fluid.density),
+      system_(mesh, boundary_, options_.element == "taylor_hood" ? 2 : 1),
+      solver_(system_),
+      order_(fluid.order),
+      gravity_(gravity) {
+  density_ = fluid.density;
+  viscosity_ = fluid.viscosity;
+  model_a_ = fluid.model == "a";
+  reduced_pressure_ = !fluid.hydrostatic;
+  load_ = ParticleLoad(mesh.nodes);
+  const double stabilised = system_.equal_order() ? 1 : 0;
+  FlowParameters& k = fields_.parameters;
+  k.density = density_;
+  k.viscosity = viscosity_;
+  k.supg = options_.supg.value_or(stabilised);
+  k.pspg = options_.pspg.value_or(stabilised);
+  k.grad_div = options_.grad_div.value_or(stabilised);
+  k.model_a = model_a_;
+  k.load_as_density = !system_.equal_order();
+  if (fluid.hydrostatic)
+    for (int i = 0; i < 3; ++i) k.gravity[i] = gravity[i];
+  fields_.backflow = fluid.backflow;
+  if (options.given("fluid_body_force")) {
+    auto force = std::make_shared<VectorExpression>("fluid_body_force", fluid.body_force);
+    body_force_ = [force](const Vec3& x, double t) { return (*force)(x, t); };
+  }
+
+  const LagrangeSpace& space = system_.space();
+  const VectorExpression initial("fluid_initial_velocity", fluid.initial_velocity);
+  const Expression initial_pressure("fluid_initial_pressure", fluid.initial_pressure);
+  velocity_.assign(3 * static_cast<size_t>(space.nodes), 0.0);
+  for (int i = 0; i < space.nodes; ++i)
+    vec3(&velocity_[3 * static_cast<size_t>(i)]) =
+        initial(vec3(&space.node_coordinates[3 * static_cast<size_t>(i)]), 0);
+  if (mesh.dimension == 2)
+    for (int i = 0; i < space.nodes; ++i) velocity_[3 * static_cast<size_t>(i) + 2] = 0;
+  pressure_.assign(mesh.nodes, 0.0);
+  for (int i = 0; i < mesh.nodes; ++i)
+    pressure_[i] = initial_pressure(vec3(&mesh.node_coordinates[3 * static_cast<size_t>(i)]), 0);
+  step_previous_.assign(mesh.nodes, 0.0);
+  change_.assign(3 * static_cast<size_t>(mesh.nodes), 0.0);
+  unknown_ = system_.create_vector();
+  prepare_step(0, 0);
+  system_.constraints().impose(fields_.prescribed_velocity.data(), velocity_.data());
+  velocity_previous_ = velocity_;
+  system_.to_vector(velocity_.data(), pressure_.data(), unknown_);
+  find_pressure_gradient();
+}
+
+void Monolithic::prepare_step(double time, double dt) {
+  const LagrangeSpace& space = system_.space();
+  const size_t v = space.nodes, p = mesh_.nodes;
+  StepFields& f = fields_;
+  f.alpha.resize(v);
+  space.interpolate(load_.void_fraction.data(), f.alpha.data(), 1);
+  for (double& alpha : f.alpha) alpha = std::max(alpha, least_alpha);
+  f.alpha_rate = load_.void_fraction_rate;
+  f.nodal_load = load_.force;
+  f.nodal_response = load_.response;
+  f.load.resize(3 * p);
+  f.response.resize(p);
+  for (size_t i = 0; i < p; ++i) {
+    const double inverse = 1 / system_.lumped_mass()[i];
+    f.response[i] = load_.response[i] * inverse;
+    for (int c = 0; c < 3; ++c) f.load[3 * i + c] = load_.force[3 * i + c] * inverse;
+  }
+  f.body.assign(3 * v, 0.0);
+  if (body_force_)
+    for (size_t i = 0; i < v; ++i) vec3(&f.body[3 * i]) = body_force_(vec3(&space.node_coordinates[3 * i]), time + dt);
+
+  // du/dt = a u^{n+1} + b u^n + c u^{n-1}.
+  const double previous = mesh_.nodes ? step_previous_[0] : 0;
+  const double last = mpi_max(previous);
+  double a = dt > 0 ? 1 / dt : 0, b = -a, c = 0;
+  if (order_ == 2 && last > 0 && dt > 0) {
+    const double ratio = dt / last;
+    a = (1 + 2 * ratio) / ((1 + ratio) * dt);
+    b = -(1 + ratio) / dt;
+    c = ratio * ratio / ((1 + ratio) * dt);
+  }
+  f.parameters.time_coefficient = a;
+  f.velocity_old = velocity_;
+  f.history.assign(3 * v, 0.0);
+  for (size_t i = 0; i < 3 * v; ++i) f.history[i] = b * velocity_[i] + (c != 0 ? c * velocity_previous_[i] : 0.0);
+
+  boundary_.evaluate(time + dt, load_.void_fraction.data());
+  f.prescribed_velocity.resize(3 * v);
+  system_.constraints().evaluate(time + dt, f.alpha.data(), f.prescribed_velocity.data());
+  f.prescribed_flow = boundary_.flow();
+  f.boundary_pressure = boundary_.pressure();
+}
+
+void Monolithic::choose_scales() {
+  // Typical sizes of the terms at a node; they make the rows comparable and say when a residual is only rounding.
+  FlowParameters& k = fields_.parameters;
+  double speed = 0;
+  for (double u : velocity_) speed = std::max(speed, std::abs(u));
+  for (double u : fields_.prescribed_velocity) speed = std::max(speed, std::abs(u));
+  speed = mpi_max(speed);
+  const double size = std::pow(mesh_.volume / static_cast<double>(mesh_.total_cells), 1.0 / mesh_.dimension);
+  k.continuity_scale = density_ * (speed + size * k.time_coefficient) + viscosity_ / size;
+  double momentum = 0, continuity = 0;
+  for (int i = 0; i < mesh_.owned_nodes; ++i) {
+    const size_t n = 3 * static_cast<size_t>(i);
+    const double mass = system_.lumped_mass()[i];
+    const double u = std::max(vec3(&velocity_[n]).norm(), vec3(&fields_.prescribed_velocity[n]).norm());
+    const double inertia = density_ * fields_.alpha[i] * (k.time_coefficient + u / size) + viscosity_ / (size * size);
+    const double force = mass * inertia * u + vec3(&fields_.nodal_load[n]).norm() +
+                         mass * vec3(&fields_.body[n]).norm() + fields_.nodal_response[i] * u;
+    momentum += force * force;
+    const double flow = k.continuity_scale * (mass * (fields_.alpha[i] * u / size + std::abs(fields_.alpha_rate[i])) +
+                                              std::abs(fields_.prescribed_flow[i]));
+    continuity += flow * flow;
+  }
+  residual_scale_ = std::sqrt(mpi_sum(momentum + continuity));
+}
+
+FluidStep Monolithic::advance(double time, double dt) {
+  prepare_step(time, dt);
+  choose_scales();
+  const std::vector<double> before = velocity_, pressure_before = pressure_;
+  std::vector<double> guess = velocity_;
+  const double last = mpi_max(mesh_.nodes ? step_previous_[0] : 0.0);
+  // Extrapolating beyond a jump of the step does more harm than good.
+  if (last > 0 && dt < 3 * last)
+    for (size_t i = 0; i < guess.size(); ++i) guess[i] += (velocity_[i] - velocity_previous_[i]) * (dt / last);
+  system_.constraints().impose(fields_.prescribed_velocity.data(), guess.data());
+  system_.to_vector(guess.data(), pressure_.data(), unknown_);
+  NewtonSolver::Result result;
+  try {
+    result = solver_.solve(fields_, unknown_, residual_scale_);
+  } catch (const SolveFailure&) {
+    system_.to_vector(before.data(), pressure_before.data(), unknown_);
+    throw;
+  }
+  system_.from_vector(unknown_, velocity_.data(), pressure_.data());
+  velocity_previous_ = before;
+  std::fill(step_previous_.begin(), step_previous_.end(), dt);
+  if (boundary_.closed()) remove_mean_pressure();
+  find_change(before);
+  find_pressure_gradient();
+  FluidStep step = report(dt);
+  step.newton_iterations = result.newton;
+  step.velocity_iterations = step.pressure_iterations = result.linear;
+  return step;
+}
+
+void Monolithic::remove_mean_pressure() {
+  double sum = 0, volume = 0;
+  for (int i = 0; i < mesh_.owned_nodes; ++i) {
+    sum += system_.lumped_mass()[i] * pressure_[i];
+    volume += system_.lumped_mass()[i];
+  }
+  const double mean = mpi_sum(sum) / mpi_sum(volume);
+  for (double& p : pressure_) p -= mean;
+  system_.to_vector(velocity_.data(), pressure_.data(), unknown_);
+}
+
+void Monolithic::find_change(const std::vector<double>& before) {
+  if (system_.equal_order()) {
+    for (size_t i = 0; i < change_.size(); ++i) change_[i] = velocity_[i] - before[i];
+    return;
+  }
+  const LagrangeSpace& space = system_.space();
+  const FlowTable& table = flow_table(mesh_.cell, space.order);
+  const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;
+  std::fill(change_.begin(), change_.end(), 0.0);
+  for (int c = 0; c < mesh_.cells; ++c) {
+    const double* x = &mesh_.cell_coordinates[3 * static_cast<size_t>(c) * np];
+    for (int q = 0; q < table.points; ++q) {
+      Mat3 J = Mat3::Zero();
+      for (int a = 0; a < np; ++a) J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
+      if (mesh_.dimension == 2) J(2, 2) = 1;
+      Vec3 change = Vec3::Zero();
+      for (int a = 0; a < nv; ++a) {
+        const size_t n = 3 * static_cast<size_t>(space.cell_nodes[static_cast<size_t>(c) * nv + a]);
+        change += table.N[q][a] * (vec3(&velocity_[n]) - vec3(&before[n]));
+      }
+      const double w = table.weight[q] * J.determinant();
+      for (int a = 0; a < np; ++a)
+        vec3(&change_[3 * static_cast<size_t>(mesh_.cell_nodes[static_cast<size_t>(c) * np + a])]) +=
+            w * table.M[q][a] * change;
+    }
+  }
+  mesh_.sum_shared(change_.data(), 3);
+  for (int i = 0; i < mesh_.nodes; ++i) vec3(&change_[3 * static_cast<size_t>(i)]) /= system_.lumped_mass()[i];
+}
+
+void Monolithic::find_pressure_gradient() {
+  // int alpha_h grad p_h = sum_i alpha_i int N_i grad p_h, whatever the velocity element.
+  const FlowTable& table = flow_table(mesh_.cell, system_.space().order);
+  const int np = mesh_.nodes_per_cell;
+  pressure_gradient_.assign(3 * static_cast<size_t>(mesh_.nodes), 0.0);
+  for (int c = 0; c < mesh_.cells; ++c) {
+    const double* x = &mesh_.cell_coordinates[3 * static_cast<size_t>(c) * np];
+    const int* n = &mesh_.cell_nodes[static_cast<size_t>(c) * np];
+    for (int q = 0; q < table.points; ++q) {
+      Mat3 J = Mat3::Zero();
+      Vec3 reference = Vec3::Zero();
+      for (int a = 0; a < np; ++a) {
+        J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
+        reference += pressure_[n[a]] * vec3(table.dM[q][a]);
+      }
+      if (mesh_.dimension == 2) J(2, 2) = 1;
+      const Vec3 gradient = table.weight[q] * J.determinant() * (J.inverse().transpose() * reference);
+      for (int a = 0; a < np; ++a) vec3(&pressure_gradient_[3 * static_cast<size_t>(n[a])]) += table.M[q][a] * gradient;
+    }
+  }
+  mesh_.sum_shared(pressure_gradient_.data(), 3);
+  for (int i = 0; i < mesh_.nodes; ++i)
+    vec3(&pressure_gradient_[3 * static_cast<size_t>(i)]) /= system_.lumped_mass()[i];
+}
+
+double Monolithic::courant_rate() const {
+  const LagrangeSpace& space = system_.space();
+  double rate = 0;
+  for (int c = 0; c < mesh_.cells; ++c)
+    for (int a = 0; a < space.nodes_per_cell; ++a) {
+      const size_t n = 3 * static_cast<size_t>(space.cell_nodes[static_cast<size_t>(c) * space.nodes_per_cell + a]);
+      rate = std::max(rate, vec3(&velocity_[n]).norm() / system_.cell_size()[c]);
+    }
+  return mpi_max(rate);
+}
+
+std::vector<BoundaryFlow> Monolithic::boundary_flow() const {
+  const std::vector<FacetIntegrals> integrals = system_.boundary_integrals(fields_, unknown_);
+  const std::vector<Vec3> forces = system_.boundary_forces(fields_, unknown_);
+  std::vector<BoundaryFlow> result(integrals.size());
+  for (size_t b = 0; b < result.size(); ++b) {
+    const bool open = boundary_.type(static_cast<int>(b)) == BoundaryType::pressure;
+    result[b].volume_flow = open ? integrals[b].volume_flow : boundary_.boundary_flow()[b];
+    result[b].mean_pressure = integrals[b].area > 0 ? integrals[b].pressure / integrals[b].area : 0;
+    result[b].force = open ? integrals[b].traction : forces[b];
+  }
+  return result;
+}
+
+FluidStep Monolithic::report(double dt) const {
+  FluidStep step;
+  step.courant = courant_rate() * dt;
+  const std::vector<FacetIntegrals> integrals = system_.boundary_integrals(fields_, unknown_);
+  const std::vector<BoundaryFlow> flows = boundary_flow();
+  double sum = 0, inflow = 0, stored = 0;
+  for (size_t b = 0; b < flows.size(); ++b) {
+    sum += flows[b].volume_flow;
+    inflow += std::max(0.0, -flows[b].volume_flow);
+    step.boundary_force -= flows[b].force + integrals[b].convection;
+  }
+  for (int i = 0; i < mesh_.owned_nodes; ++i) stored += system_.lumped_mass()[i] * fields_.alpha_rate[i];
+  step.mass_residual = -(sum + mpi_sum(stored)) / (inflow > 0 ? inflow : 1.0);
+
+  const LagrangeSpace& space = system_.space();
+  const FlowTable& table = flow_table(mesh_.cell, space.order);
+  const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;
+  Vec3 momentum = Vec3::Zero();
+  for (int c = 0; c < mesh_.cells; ++c) {
+    const double* x = &mesh_.cell_coordinates[3 * static_cast<size_t>(c) * np];
+    for (int q = 0; q < table.points; ++q) {
+      Mat3 J = Mat3::Zero();
+      for (int a = 0; a < np; ++a) J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
+      if (mesh_.dimension == 2) J(2, 2) = 1;
+      double alpha = 0;
+      Vec3 u = Vec3::Zero();
+      for (int a = 0; a < nv; ++a) {
+        const size_t n = space.cell_nodes[static_cast<size_t>(c) * nv + a];
+        alpha += table.N[q][a] * fields_.alpha[n];
+        u += table.N[q][a] * vec3(&velocity_[3 * n]);
+      }
+      momentum += table.weight[q] * J.determinant() * alpha * density_ * u;
+    }
+  }
+  for (int i = 0; i < 3; ++i) step.momentum[i] = mpi_sum(momentum[i]);
+  return step;
+}
+
+std::vector<Fluid::StateArray> Monolithic::state() {
+  // A checkpoint sees the vertices as [nodes][3] and the middles by cell.
+  const LagrangeSpace& space = system_.space();
+  const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;
+  std::vector<StateArray> result = {{"pressure", &pressure_, 1},
+                                    {"velocity", &vertices_, 3},
+                                    {"velocity_previous", &vertices_previous_, 3},
+                                    {"velocity_change", &change_, 3},
+                                    {"fluid_step_previous", &step_previous_, 1}};
+  const size_t vertices = 3 * static_cast<size_t>(mesh_.nodes);
+  vertices_.assign(velocity_.begin(), velocity_.begin() + static_cast<long>(vertices));
+  vertices_previous_.assign(velocity_previous_.begin(), velocity_previous_.begin() + static_cast<long>(vertices));
+  if (system_.equal_order()) return result;
+  const auto gather = [&](const std::vector<double>& from, std::vector<double>& to) {
+    to.resize(3 * static_cast<size_t>(mesh_.cells) * (nv - np));
+    for (int c = 0; c < mesh_.cells; ++c)
+      for (int a = np; a < nv; ++a)
+        std::copy_n(&from[3 * static_cast<size_t>(space.cell_nodes[static_cast<size_t>(c) * nv + a])], 3,
+                    &to[3 * (static_cast<size_t>(c) * (nv - np) + a - np)]);
+  };
+  gather(velocity_, middles_);
+  gather(velocity_previous_, middles_previous_);
+  result.push_back({"velocity_middles", &middles_, 3 * (nv - np), true});
+  result.push_back({"velocity_middles_previous", &middles_previous_, 3 * (nv - np), true});
+  return result;
+}
+
+void Monolithic::restored() {
+  const LagrangeSpace& space = system_.space();
+  const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;
+  std::copy(vertices_.begin(), vertices_.end(), velocity_.begin());
+  std::copy(vertices_previous_.begin(), vertices_previous_.end(), velocity_previous_.begin());
+  if (!system_.equal_order()) {
+    const auto scatter = [&](const std::vector<double>& from, std::vector<double>& to) {
+      to.resize(3 * static_cast<size_t>(space.nodes));
+      for (int c = 0; c < mesh_.cells; ++c)
+        for (int a = np; a < nv; ++a)
+          std::copy_n(&from[3 * (static_cast<size_t>(c) * (nv - np) + a - np)], 3,
+                      &to[3 * static_cast<size_t>(space.cell_nodes[static_cast<size_t>(c) * nv + a])]);
+    };
+    scatter(middles_, velocity_);
+    scatter(middles_previous_, velocity_previous_);
+  }
+  system_.to_vector(velocity_.data(), pressure_.data(), unknown_);
+  find_pressure_gradient();
+}
+
+std::unique_ptr<Fluid> make_monolithic(const Mesh& mesh, Options& options, const FluidOptions& fluid,
+                                       const Vec3& gravity) {
+  return std::make_unique<Monolithic>(mesh, options, fluid, gravity);
+}
+
+}  // namespace silt

@@ -1,0 +1,87 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "fluid/assembly/flow_system.hpp"
+#include "fluid/fluid.hpp"
+#include "fluid/fluid_options.hpp"
+#include "fluid/newton_solver.hpp"
+
+namespace silt {
+
+/// The options `-fluid_...` of the monolithic scheme.
+struct MonolithicOptions {
+  std::string element = "equal_order";
+  std::optional<double> supg, pspg, grad_div;
+  void options(OptionGroup& option);
+};
+
+/// Velocity and pressure in one system, solved by Newton's method with the exact Jacobian (automatic differentiation of
+/// VolumeAveragedNavierStokes). Fully implicit in time, BDF1 or BDF2 with variable step (the first step is BDF1).
+///
+/// The particles' load with equal-order elements is the nodal vector as given: row i gets force_i - response_i
+/// (u_i^{n+1} - u_i^n); the stabilisation sees the densities sum_i N_i force_i / M_i and response_i / M_i (M lumped
+/// mass of the vertices). With Taylor-Hood elements these densities f_h, r_h enter the weak form: int f_h.v - int r_h
+/// (u^{n+1} - u^n).v. A load on the vertices alone would be a set of spikes for P2, whose vertex functions have no
+/// mean. Both forms hand over the same total: int f_h = sum force_i, and int r_h (u^{n+1} - u^n) = sum response_i c_i
+/// with the weighted mean c_i = int N_i (u^{n+1} - u^n) / M_i, which velocity_change() returns; it is exact because M_i
+/// and c_i use the quadrature of the weak form.
+class Monolithic final : public Fluid {
+ public:
+  /// Reads `-fluid_element` and the stabilisation factors; `boundary` conditions from `-boundary_...`. Collective.
+  Monolithic(const Mesh& mesh, Options& options, const FluidOptions& fluid, const Vec3& gravity);
+
+  FluidStep advance(double time, double dt) override;
+  double courant_rate() const override;
+  std::span<const double> velocity() const override { return {velocity_.data(), 3 * static_cast<size_t>(mesh_.nodes)}; }
+  std::span<const double> velocity_change() const override { return change_; }
+  std::span<const double> pressure() const override { return pressure_; }
+  std::span<const double> pressure_gradient() const override { return pressure_gradient_; }
+  std::vector<BoundaryFlow> boundary_flow() const override;
+  std::vector<StateArray> state() override;
+  void restored() override;
+
+  /// Adds a force per volume (N/m3) to the momentum equation, as `-fluid_body_force` does.
+  void set_body_force(std::function<Vec3(const Vec3& x, double t)> force) { body_force_ = std::move(force); }
+  /// The step of the last advance(), for tests of the algebraic system.
+  const FlowSystem& system() const { return system_; }
+  const StepFields& fields() const { return fields_; }
+  /// [system().space().nodes][3] m/s, all velocity nodes.
+  std::span<const double> all_velocities() const { return velocity_; }
+  std::span<double> all_velocities() { return velocity_; }
+  /// Sets up fields() for a step from time to time + dt, as advance() does. Collective.
+  void prepare_step(double time, double dt);
+  /// Residual norms of the Newton iterations of the last step.
+  const std::vector<double>& newton_norms() const { return solver_.norms(); }
+
+ private:
+  void choose_scales();
+  void find_change(const std::vector<double>& before);
+  void find_pressure_gradient();
+  void remove_mean_pressure();
+  FluidStep report(double dt) const;
+
+  const Mesh& mesh_;
+  MonolithicOptions options_;
+  BoundaryConditions boundary_;
+  FlowSystem system_;
+  NewtonSolver solver_;
+  StepFields fields_;
+  int order_;
+  Vec3 gravity_;
+  std::function<Vec3(const Vec3&, double)> body_force_;
+  VecHandle unknown_;
+  std::vector<double> velocity_, velocity_previous_;  ///< [v][3], u^n and u^{n-1}
+  std::vector<double> pressure_, change_, pressure_gradient_;
+  std::vector<double>
+      step_previous_;  ///< [nodes] s, dt of the last step, 0 before the first (an array for the checkpoint)
+  std::vector<double> vertices_, vertices_previous_;  ///< [nodes][3], velocities as the checkpoint sees them
+  std::vector<double> middles_, middles_previous_;    ///< [cells][middles][3]
+  double residual_scale_ = 0;
+};
+
+std::unique_ptr<Fluid> make_monolithic(const Mesh& mesh, Options& options, const FluidOptions& fluid,
+                                       const Vec3& gravity);
+
+}  // namespace silt

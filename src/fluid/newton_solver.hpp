@@ -1,0 +1,47 @@
+#pragma once
+#include <vector>
+
+#include "fluid/assembly/flow_system.hpp"
+
+namespace silt {
+
+/// Newton's method (SNES, option prefix `fluid_`) for the steps of a FlowSystem.
+///
+/// Linear solver unless options say otherwise: equal order GMRES (right) with additive Schwarz, overlap 1, ILU(1);
+/// Taylor-Hood FGMRES with an upper Schur complement (selfp), block ILU for the velocity and BoomerAMG for the
+/// pressure. When Newton fails and the system is small the step is tried once more with MUMPS.
+class NewtonSolver {
+ public:
+  explicit NewtonSolver(const FlowSystem& system);
+  ~NewtonSolver();
+  NewtonSolver(const NewtonSolver&) = delete;
+  NewtonSolver& operator=(const NewtonSolver&) = delete;
+
+  struct Result {
+    int newton = 0, linear = 0;
+  };
+  /// Solves from the guess x; `scale` is the size of the terms that balance in the residual, below 1e-10 of which it
+  /// counts as zero. Throws SolveFailure with the reason; x is then undefined. Collective.
+  Result solve(const StepFields& fields, Vec x, double scale);
+  /// Residual norms of the last solve.
+  const std::vector<double>& norms() const { return norms_; }
+  Mat matrix() const { return matrix_; }
+
+ private:
+  void create(SNES* snes, const char* prefix, bool direct);
+  SNESConvergedReason run(SNES snes, Vec x, Result& result);
+  static PetscErrorCode residual(SNES, Vec x, Vec r, void* self);
+  static PetscErrorCode jacobian(SNES, Vec x, Mat, Mat matrix, void* self);
+  static PetscErrorCode monitor(SNES, PetscInt iteration, PetscReal norm, void* self);
+
+  const FlowSystem& system_;
+  const StepFields* fields_ = nullptr;
+  MatHandle matrix_;
+  VecHandle residual_, start_;
+  SnesHandle snes_, direct_;
+  PetscInt rows_ = 0;
+  bool tolerance_given_ = false;
+  std::vector<double> norms_;
+};
+
+}  // namespace silt
