@@ -1,6 +1,7 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <functional>
@@ -12,11 +13,13 @@
 
 namespace silt::test {
 
-/// A mesh of mapped hexahedra: those cells (i, j, k) of a grid for which `keep` holds, corners moved by `map`, every
-/// boundary facet named by `name` of its centre; made by way of a Gmsh file.
+/// A mesh of mapped hexahedra, made by way of a Gmsh file: those cells (i, j, k) of a grid for which `keep` holds,
+/// corners moved by `map`, every boundary facet named by `name` of its centre. `node` may replace a grid point by
+/// another one: cells of layers that are not kept then share their points, or leave a slit.
 struct Grid {
   std::array<int, 3> cells{1, 1, 1};
   std::function<bool(int, int, int)> keep = [](int, int, int) { return true; };
+  std::function<std::array<int, 3>(int, int, int)> node = [](int i, int j, int k) { return std::array{i, j, k}; };
   std::function<Vec3(const Vec3&)> map = [](const Vec3& x) { return x; };
   std::function<std::string(const Vec3&)> name = [](const Vec3&) { return std::string("shell"); };
 };
@@ -25,9 +28,9 @@ inline Mesh grid_mesh(const Grid& grid) {
   const std::string file = "silt_test_grid.msh";
   if (mpi_rank() == 0) {
     const auto& n = grid.cells;
-    const auto node = [&](int i, int j, int k) { return i + (n[0] + 1) * (j + (n[1] + 1) * k); };
-    const auto kept = [&](int i, int j, int k) {
-      return i >= 0 && j >= 0 && k >= 0 && i < n[0] && j < n[1] && k < n[2] && grid.keep(i, j, k);
+    const auto node = [&](int i, int j, int k) {
+      const auto at = grid.node(i, j, k);
+      return at[0] + (n[0] + 1) * (at[1] + (n[1] + 1) * at[2]);
     };
     std::vector<Vec3> points;
     for (int k = 0; k <= n[2]; ++k)
@@ -43,28 +46,30 @@ inline Mesh grid_mesh(const Grid& grid) {
       for (int id : nodes) elements += fmt::format(" {}", used(id));
       elements += "\n";
     };
+    std::map<std::vector<int>, std::vector<int>> outside;  // facets that one cell only has, by their sorted nodes
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j)
         for (int i = 0; i < n[0]; ++i) {
-          if (!kept(i, j, k)) continue;
+          if (!grid.keep(i, j, k)) continue;
           std::vector<int> corners;
           for (int dz : {0, 1})
             for (int c : {0, 1, 3, 2}) corners.push_back(node(i + (c & 1), j + (c >> 1), k + dz));
           add(5, 100, corners);
           static const int sides[6][4] = {{0, 3, 7, 4}, {1, 2, 6, 5}, {0, 1, 5, 4},
                                           {3, 2, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}};
-          static const int step[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
-          for (int s = 0; s < 6; ++s) {
-            if (kept(i + step[s][0], j + step[s][1], k + step[s][2])) continue;
-            std::vector<int> nodes;
-            Vec3 centre = Vec3::Zero();
-            for (int a : sides[s]) {
-              nodes.push_back(corners[a]);
-              centre += 0.25 * points[corners[a]];
-            }
-            add(3, tags.emplace(grid.name(centre), static_cast<int>(tags.size()) + 1).first->second, nodes);
+          for (const auto& side : sides) {
+            std::vector<int> nodes, sorted;
+            for (int a : side) nodes.push_back(corners[a]);
+            sorted = nodes;
+            std::sort(sorted.begin(), sorted.end());
+            if (!outside.emplace(sorted, nodes).second) outside.erase(sorted);
           }
         }
+    for (const auto& [sorted, nodes] : outside) {
+      Vec3 centre = Vec3::Zero();
+      for (int a : nodes) centre += 0.25 * points[a];
+      add(3, tags.emplace(grid.name(centre), static_cast<int>(tags.size()) + 1).first->second, nodes);
+    }
     std::ofstream out(file);
     out.precision(17);
     out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n" << tags.size() + 1 << "\n";

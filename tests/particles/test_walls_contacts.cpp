@@ -197,3 +197,45 @@ TEST_CASE("In two dimensions sides are walls and corners of the domain are felt 
     CHECK(touches(walls, {0.05, 0.96, 0}, 0.1).size() == 2);
   }
 }
+
+TEST_CASE("A straight convex edge is one edge however finely it is meshed", "[walls]") {
+  const Walls walls = walls_of(step(5));
+  CHECK(walls.shape().edges.size() == 1);
+}
+
+TEST_CASE("A wall without thickness is felt from both sides and around its rim", "[walls]") {
+  // A plate z = 2, x < 3 across a room of 6 x 6 x 4.
+  Grid grid;
+  grid.cells = {6, 6, 5};
+  grid.keep = [](int, int, int k) { return k != 2; };
+  grid.node = [](int i, int j, int k) { return std::array{i, j, k == 3 && i >= 3 ? 2 : k}; };
+  grid.map = [](const Vec3& x) { return Vec3(x[0], x[1], x[2] < 3 ? x[2] : x[2] - 1); };
+  const Mesh mesh = grid_mesh(grid);
+  Walls walls = walls_of(mesh);
+  CHECK(walls.shape().edges.size() == 1);
+  for (double x : {1.0, 1.5, 2.0, 2.7, 3.0})
+    for (double side : {-1, 1}) {
+      const auto found = touches(walls, {x, 2.7, 2 + 0.4 * side}, 0.5);
+      REQUIRE(found.size() == 1);
+      CHECK(found[0].distance == Approx(0.4));
+      CHECK(found[0].normal[2] == Approx(side));
+    }
+  for (double z : {1.8, 2.0, 2.3}) {
+    const auto rim = touches(walls, {3.3, 2.6, z}, 0.5);
+    REQUIRE(rim.size() == 1);
+    CHECK(rim[0].distance == Approx(std::hypot(0.3, z - 2)));
+  }
+  CHECK(touches(walls, {3.6, 2.6, 2}, 0.5).empty());
+}
+
+TEST_CASE("Blocks that touch along a line leave two rooms with their own walls", "[walls]") {
+  // Rooms x, y < 2 and x, y > 2 of a chequered box, joined nowhere but in the line x = y = 2.
+  Grid grid;
+  grid.cells = {4, 4, 2};
+  grid.keep = [](int i, int j, int) { return (i < 2) == (j < 2); };
+  const Mesh mesh = grid_mesh(grid);
+  Walls walls = walls_of(mesh);
+  CHECK(walls.shape().edges.empty());
+  CHECK(touches(walls, {1.8, 1.7, 1}, 0.4).size() == 2);
+  CHECK(touches(walls, {2.3, 2.2, 1}, 0.4).size() == 2);
+}

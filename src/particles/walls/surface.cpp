@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 #include "particles/walls/point_index.hpp"
@@ -132,6 +133,48 @@ void Surface::connect() {
       if (facets[f].edge[k] >= 0) edge_facets[facets[f].edge[k]].push_back({f, k});
       if (facets[f].vertex[k] >= 0) vertex_facets[facets[f].vertex[k]].push_back({f, k});
     }
+  split_edges();
+}
+
+void Surface::split_edges() {
+  const size_t count = edge_facets.size();
+  for (size_t e = 0; e < count; ++e) {
+    auto left = edge_facets[e];
+    if (left.size() <= 2) continue;
+    edge_facets[e].clear();
+    for (bool first = true; !left.empty(); first = false) {
+      // Turning about the edge from facet a through the domain, the next facet that faces the other way.
+      const auto a = left[0];
+      const Vec3 up = facets[a[0]].normal;
+      const auto into = [&](const std::array<int, 2>& use) -> Vec3 {
+        const auto& facet = facets[use[0]];
+        return (facet.end(use[1]) - facet.start(use[1])).cross(facet.normal).normalized();
+      };
+      const Vec3 along = into(a);
+      size_t best = 0;
+      double least = 1e300;
+      for (size_t k = 1; k < left.size(); ++k) {
+        const Vec3 other = into(left[k]);
+        double angle = std::atan2(other.dot(up), other.dot(along));
+        if (angle < 1e-7) angle += 2 * std::numbers::pi;
+        const Vec3 onward = std::cos(angle) * up - std::sin(angle) * along;
+        if (facets[left[k][0]].normal.dot(onward) < 0 && angle < least) {
+          least = angle;
+          best = k;
+        }
+      }
+      std::vector<std::array<int, 2>> wedge = {a};
+      if (best > 0) wedge.push_back(left[best]);
+      const int edge = first ? static_cast<int>(e) : static_cast<int>(edge_facets.size());
+      for (const auto& [f, k] : wedge) facets[f].edge[k] = edge;
+      if (best > 0) left.erase(left.begin() + static_cast<long>(best));
+      left.erase(left.begin());
+      if (first)
+        edge_facets[e] = std::move(wedge);
+      else
+        edge_facets.push_back(std::move(wedge));
+    }
+  }
 }
 
 void Surface::grow_patches() {

@@ -41,7 +41,9 @@ class Surface {
   double tolerance;  ///< m, lengths below it count as round-off
   std::vector<SurfaceFacet> facets;
   std::vector<Patch> patches;
-  std::vector<std::vector<std::array<int, 2>>> edge_facets;    ///< of every edge: {facet, its k}
+  /// Of every edge: {facet, its k}. Two facets, the wedge between which lies in the domain; where more meet (a wall
+  /// without thickness, blocks that touch along a line) every wedge has an edge of its own.
+  std::vector<std::vector<std::array<int, 2>>> edge_facets;
   std::vector<std::vector<std::array<int, 2>>> vertex_facets;  ///< of every vertex: {facet, its corner}
 
   /// In-plane unit vector from edge k of a facet into the facet, in the plane of its patch.
@@ -52,6 +54,7 @@ class Surface {
  private:
   void gather(const Mesh& mesh);
   void connect();
+  void split_edges();
   void grow_patches();
 };
 

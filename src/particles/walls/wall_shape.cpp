@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <unordered_map>
 
 #include "particles/walls/convex_parts.hpp"
 
@@ -39,6 +40,8 @@ WallShape::WallShape(const Surface& surface, const std::vector<bool>& is_wall, d
   for (size_t p = 0; p < surface.patches.size(); ++p)
     if (group[p] >= 0) add_faces(surface, surface.patches[p], group[p]);
   add_edges(surface, is_wall, group);
+  if (surface.dimension == 3) add_vertices(surface, is_wall, group);
+  join_straight_edges();
 }
 
 void WallShape::add_faces(const Surface& surface, const Patch& patch, int group) {
@@ -67,8 +70,6 @@ void WallShape::add_face(const std::vector<Vec3>& outline, const Patch& patch, i
 void WallShape::add_edges(const Surface& surface, const std::vector<bool>& is_wall, const std::vector<int>& group) {
   constexpr double flat = 1e-9;
   const auto plane = [&](int f) -> const Patch& { return surface.patches[surface.facets[f].patch]; };
-  // Directions of the convex edges at every vertex: a vertex can touch only where two of them meet at an angle.
-  std::vector<std::vector<Vec3>> at_vertex(surface.vertex_facets.size());
   for (const auto& around : surface.edge_facets) {
     std::vector<std::array<int, 2>> walls, others;
     for (const auto& use : around) (is_wall[surface.facets[use[0]].boundary] ? walls : others).push_back(use);
@@ -101,11 +102,17 @@ void WallShape::add_edges(const Surface& surface, const std::vector<bool>& is_wa
     }
     edge.box.add(facet.start(k));
     edge.box.add(facet.end(k));
+    edge.vertices = {facet.vertex[k], facet.vertex[k + 1 == facet.corners ? 0 : k + 1]};
     edges.push_back(edge);
-    if (surface.dimension == 3) {
-      at_vertex[facet.vertex[k]].push_back(edge.direction);
-      at_vertex[facet.vertex[k + 1 == facet.corners ? 0 : k + 1]].push_back(-edge.direction);
-    }
+  }
+}
+
+void WallShape::add_vertices(const Surface& surface, const std::vector<bool>& is_wall, const std::vector<int>& group) {
+  // Directions of the convex edges at every vertex: a vertex can touch only where two of them meet at an angle.
+  std::vector<std::vector<Vec3>> at_vertex(surface.vertex_facets.size());
+  for (const auto& edge : edges) {
+    at_vertex[edge.vertices[0]].push_back(edge.direction);
+    at_vertex[edge.vertices[1]].push_back(-edge.direction);
   }
   for (size_t v = 0; v < at_vertex.size(); ++v) {
     const auto& directions = at_vertex[v];
@@ -139,6 +146,55 @@ void WallShape::add_edges(const Surface& surface, const std::vector<bool>& is_wa
     corner.box.add(corner.start);
     edges.push_back(corner);
   }
+}
+
+void WallShape::join_straight_edges() {
+  // Lines of edges that lie in the same two faces become one: a large sphere then meets few of them.
+  const auto alike = [&](const WallEdge& a, const WallEdge& b) {
+    if (a.rays != b.rays || a.boundary != b.boundary || a.group != b.group) return false;
+    if (std::abs(a.direction.dot(b.direction)) < 1 - 1e-13 || (a.outside - b.outside).norm() > 1e-9) return false;
+    bool same = true, swapped = a.rays == 2;
+    for (int r = 0; r < a.rays; ++r) {
+      same = same && (rays[a.first_ray + r] - rays[b.first_ray + r]).norm() < 1e-9;
+      swapped = swapped && (rays[a.first_ray + r] - rays[b.first_ray + 1 - r]).norm() < 1e-9;
+    }
+    return same || swapped;
+  };
+  std::unordered_map<int, std::vector<int>> at_vertex;
+  for (int e = 0; e < static_cast<int>(edges.size()); ++e)
+    if (edges[e].length > 0)
+      for (int v : edges[e].vertices)
+        if (v >= 0) at_vertex[v].push_back(e);
+  std::vector<WallEdge> joined;
+  std::vector<bool> used(edges.size(), false);
+  for (int e = 0; e < static_cast<int>(edges.size()); ++e) {
+    if (used[e]) continue;
+    used[e] = true;
+    WallEdge whole = edges[e];
+    for (int end : {0, 1})
+      for (bool grown = whole.length > 0; grown;) {
+        grown = false;
+        const auto found = at_vertex.find(whole.vertices[end]);
+        if (found == at_vertex.end()) break;
+        const Vec3 tip = whole.start + (end ? whole.length : 0) * whole.direction;
+        for (int other : found->second) {
+          const WallEdge& next = edges[other];
+          if (used[other] || !alike(edges[e], next)) continue;
+          const Vec3 next_end = next.start + next.length * next.direction;
+          const bool from_start = (next.start - tip).norm() < 16 * tolerance;
+          // Neighbours across a period are not joined.
+          if (!from_start && (next_end - tip).norm() >= 16 * tolerance) continue;
+          used[other] = grown = true;
+          whole.vertices[end] = next.vertices[from_start ? 1 : 0];
+          if (end == 0) whole.start = from_start ? next_end : next.start;
+          whole.length += next.length;
+          whole.box.add(next.box);
+          break;
+        }
+      }
+    joined.push_back(whole);
+  }
+  edges = std::move(joined);
 }
 
 void WallShape::add_near(const WallShape& all, const std::vector<Vec3>& shifts, const Box& box) {

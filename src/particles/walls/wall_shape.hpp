@@ -32,7 +32,8 @@ struct WallEdge {
   Vec3 outside;  ///< the centre must lie on this side; zero: no condition
   int first_ray, rays;
   int boundary;
-  int group;  ///< -1 between faces of different groups
+  int group;                            ///< -1 between faces of different groups
+  std::array<int, 2> vertices{-1, -1};  ///< of the surface, at its ends
   Box box;
 };
 
@@ -54,6 +55,8 @@ struct WallShape {
   void add_faces(const Surface& surface, const Patch& patch, int group);
   void add_face(const std::vector<Vec3>& outline, const Patch& patch, int boundary, int group);
   void add_edges(const Surface& surface, const std::vector<bool>& is_wall, const std::vector<int>& group);
+  void add_vertices(const Surface& surface, const std::vector<bool>& is_wall, const std::vector<int>& group);
+  void join_straight_edges();
 };
 
 }  // namespace silt
