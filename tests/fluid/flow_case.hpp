@@ -70,4 +70,52 @@ struct FlowCase {
   }
 };
 
+/// A held bed: drag -alpha_e kappa_e U, U = alpha u interpolated and kappa_e the cell mean of beta/alpha^2, as
+/// particles spread evenly over each cell would exert it: the force at u^n as a load, and the row sums of its
+/// derivative as the response. `void_fraction` and `drag` (beta, kg/m3/s) at the nodes.
+inline void set_bed(FlowCase& flow, const std::function<double(const Vec3&)>& void_fraction,
+                    const std::function<double(const Vec3&)>& drag) {
+  const Mesh& mesh = *flow.mesh;
+  auto& load = flow.fluid->load();
+  const auto u = flow.fluid->velocity();
+  std::vector<double> sums(4 * static_cast<std::size_t>(mesh.nodes), 0.0), beta(mesh.nodes);
+  for (int i = 0; i < mesh.nodes; ++i) {
+    load.void_fraction[i] = void_fraction(flow.position(i));
+    beta[i] = drag(flow.position(i));
+  }
+  const auto rule = quadrature(mesh.cell, 3);
+  const int nv = mesh.nodes_per_cell;
+  for (int c = 0; c < mesh.cells; ++c) {
+    const int* node = &mesh.cell_nodes[static_cast<std::size_t>(c) * nv];
+    double mean = 0, kappa = 0;
+    for (int a = 0; a < nv; ++a) {
+      const double alpha = load.void_fraction[node[a]];
+      mean += alpha / nv;
+      kappa += beta[node[a]] / (alpha * alpha) / nv;
+    }
+    for (int q = 0; q < rule.points; ++q) {
+      double N[8], dN[8][3], alpha = 0;
+      shape(mesh.cell, rule.point[q].data(), N, dN);
+      Vec3 U = Vec3::Zero();
+      Mat3 J = Mat3::Zero();
+      for (int a = 0; a < nv; ++a) {
+        J += vec3(&mesh.cell_coordinates[3 * (static_cast<std::size_t>(c) * nv + a)]) * vec3(dN[a]).transpose();
+        alpha += N[a] * load.void_fraction[node[a]];
+        U += N[a] * load.void_fraction[node[a]] * vec3(u.data() + 3 * node[a]);
+      }
+      if (mesh.dimension == 2) J(2, 2) = 1;
+      const double weight = rule.weight[q] * J.determinant() * mean * kappa;
+      for (int a = 0; a < nv; ++a) {
+        vec3(&sums[4 * node[a]]) -= weight * N[a] * U;
+        sums[4 * node[a] + 3] += weight * N[a] * alpha;
+      }
+    }
+  }
+  mesh.sum_shared(sums.data(), 4);
+  for (int i = 0; i < mesh.nodes; ++i) {
+    vec3(&load.force[3 * i]) = vec3(&sums[4 * i]);
+    load.response[i] = sums[4 * i + 3];
+  }
+}
+
 }  // namespace silt::test

@@ -58,12 +58,6 @@ double largest_deviation(const FlowCase& flow, int cells, const Profile (&u)[a],
 
 TEST_CASE("The lid cavity at Re 100 has the centre-line profiles of Ghia et al.", "[fluid]") {
   FlowCase flow(cavity(64, 0.01));
-  int u = 0, p = 0;
-  for (int k = 0; k < 400; ++k) {
-    const FluidStep step = flow.advance(0.06);
-    u += step.velocity_iterations, p += step.pressure_iterations;
-  }
-  const double worst = largest_deviation(flow, 64, u_100, v_100);
-  WARN("Re 100: largest deviation " << worst << ", iterations " << u << " " << p);
-  CHECK(worst < 0.01);
+  for (int k = 0; k < 400; ++k) flow.advance(0.06);
+  CHECK(largest_deviation(flow, 64, u_100, v_100) < 0.01);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <limits>
 
 #include "base/error.hpp"
@@ -186,6 +187,7 @@ Vec3 BoundaryConditions::prescribed(int b, const Vec3& x, const Vec3& normal, do
 void BoundaryConditions::add_flow(double time) {
   std::fill(flow_.begin(), flow_.end(), 0.0);
   std::fill(boundary_flow_.begin(), boundary_flow_.end(), 0.0);
+  throughput_ = 0;
   bool flows = false;
   for (const auto& condition : conditions_)
     flows = flows || condition.type == BoundaryType::velocity || condition.type == BoundaryType::mass_flow;
@@ -200,12 +202,14 @@ void BoundaryConditions::add_flow(double time) {
       const auto& point = facet.point[q];
       const double out = uniform ? speed * point.area.norm() : (*condition.velocity)(point.x, time).dot(point.area);
       boundary_flow_[facet.boundary] += out;
+      throughput_ += std::abs(out);
       for (int a = 0; a < facet.nodes; a++) flow_[facet.node[a]] += point.shape[a] * out;
     }
   }
   mesh_.sum_shared(flow_.data(), 1);
   MPI_Allreduce(MPI_IN_PLACE, boundary_flow_.data(), static_cast<int>(boundary_flow_.size()), MPI_DOUBLE, MPI_SUM,
                 PETSC_COMM_WORLD);
+  throughput_ = mpi_sum(throughput_);
 }
 
 void BoundaryConditions::impose(double* u) const {

@@ -79,6 +79,8 @@ class BoundaryConditions {
   const std::vector<double>& flow() const { return flow_; }
   /// m3/s, outflow (positive) prescribed by the last evaluate() per boundary, over all ranks.
   const std::vector<double>& boundary_flow() const { return boundary_flow_; }
+  /// m3/s, sum of the prescribed inflow and outflow without their signs, over all ranks.
+  double throughput() const { return throughput_; }
 
   /// Sets the fixed directions of u [nodes][3] to the prescribed velocity.
   void impose(double* u) const;
@@ -107,6 +109,7 @@ class BoundaryConditions {
   std::vector<int> velocity_boundary_, pressure_boundary_;
   std::vector<double> normal_;  ///< [nodes][3] unit outward normal of the node's mass_flow boundary
   std::vector<double> velocity_, pressure_, flow_, boundary_flow_;
+  double throughput_ = 0;
 };
 
 }  // namespace silt

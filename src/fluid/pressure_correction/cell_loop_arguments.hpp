@@ -29,8 +29,6 @@ struct CoefficientTerms {
   const double* velocity;       ///< [nodes][3] m/s, the convecting velocity w
   const double* void_fraction;  ///< [nodes]; null: 1
   const double* drag;           ///< [nodes] kg/m3/s, beta; with void_fraction only
-  const double* force;          ///< [nodes][3] N/m3, the particles' force density with w; null: 0
-  const double* body_force;     ///< [nodes][3] N/m3; null: 0
 };
 
 /// Coefficients constant in each cell, arrays of padded_cells.
@@ -38,10 +36,17 @@ struct CellCoefficients {
   double* void_fraction;   ///< alpha_e, mean of the nodes
   double* pressure_share;  ///< P_e: alpha_e in model A, 1 in model B
   double* drag;            ///< beta_e = alpha_e^2 mean(beta/alpha^2), kg/m3/s
-  double* mobility;        ///< k_e = P_e/(alpha_e rho gamma/dt + beta_e): u = u~ - k grad phi
+  double* mobility;        ///< k_e = P_e/alpha_e mean(alpha/(alpha rho gamma/dt + beta)): u = u~ - k grad phi
   double* stabilisation;   ///< tau_p = alpha_e P_e tau, m3 s/kg
   double* force[3];        ///< f_e, mean force density of the particles; null entries: 0
-  double* balance[3];      ///< s_e = -(f_e + b_e)/P_e, what balances grad p at rest; null entries: 0
+  double* balance[3];      ///< s_e = -(f_e + weight)/P_e, what balances grad p at rest; null entries: 0
+};
+
+/// Where the cell force densities come from.
+struct ForceTerms {
+  const double* load_per_drag;  ///< [nodes][3] F_i / sum_e drag_e V_e, F_i [N] the particles' load with w; null: 0
+  const double* drag;           ///< [padded cells] kg/m3/s, how a cell shares in the loads of its nodes
+  const double* weight;         ///< [nodes][3] N/m3, the fluid's weight, when the pressure carries it; null: 0
 };
 
 /// Terms of the momentum equation; cell arrays are null without particles (void_fraction null).
@@ -77,6 +82,7 @@ struct ContinuityTerms {
 struct CellLoopTable {
   int lanes;
   void (*coefficients)(const CellBatches&, const CoefficientTerms&, const CellCoefficients&);
+  void (*cell_forces)(const CellBatches&, const ForceTerms&, const CellCoefficients&);
   void (*momentum)(const CellBatches&, const MomentumTerms&, double*, double*);
   void (*momentum_porous)(const CellBatches&, const MomentumTerms&, double*, double*);
   void (*projection)(const CellBatches&, const ContinuityTerms&, double*);

@@ -120,10 +120,11 @@ inline int lanes_of(const CellBatches& mesh, int batch) {
 template <int kind>
 void coefficients(const CellBatches& mesh, const CoefficientTerms& in, const CellCoefficients& out) {
   constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
+  const double rho_rate = in.density * in.rate;
   for (int batch = 0; batch < mesh.batches; ++batch) {
     const int* node = batch_nodes<kind>(mesh, batch);
     const long at = static_cast<long>(batch) * W;
-    Lanes w[nodes][D], speed2 = {}, alpha = constant(1), beta = {};
+    Lanes w[nodes][D], speed2 = {}, alpha = constant(1), beta = {}, mobility = constant(1 / rho_rate);
     gather(w, in.velocity, 3, node);
     for (int a = 0; a < nodes; ++a)
       for (int d = 0; d < D; ++d) speed2 += w[a][d] * w[a][d] * (1.0 / nodes);
@@ -131,36 +132,58 @@ void coefficients(const CellBatches& mesh, const CoefficientTerms& in, const Cel
       Lanes alphas[nodes][1], betas[nodes][1];
       gather(alphas, in.void_fraction, 1, node);
       gather(betas, in.drag, 1, node);
+      // The response acts at the nodes, so a cell's mobility is the mean of its nodes': with a mean of the drag instead
+      // the pressure equation is stiffer than the momentum equation where a bed ends, and the splitting unstable.
       Lanes kappa = {};
-      alpha = Lanes{};
+      alpha = mobility = Lanes{};
       for (int a = 0; a < nodes; ++a) {
         alpha += alphas[a][0] * (1.0 / nodes);
         kappa += betas[a][0] / (alphas[a][0] * alphas[a][0]) * (1.0 / nodes);
+        mobility += alphas[a][0] / (alphas[a][0] * rho_rate + betas[a][0]) * (1.0 / nodes);
       }
       beta = alpha * alpha * kappa;
+      mobility /= alpha;
     }
     const Lanes share = in.model_a ? alpha : constant(1);
-    const Lanes inertia = alpha * (in.density * in.rate) + beta, h = load(mesh.size + at);
+    const Lanes inertia = alpha * rho_rate + beta, h = load(mesh.size + at);
     const Lanes convection = alpha * (2 * in.density) / h, diffusion = alpha * (12 * in.viscosity) / (h * h);
     store(out.void_fraction + at, alpha);
     store(out.pressure_share + at, share);
     store(out.drag + at, beta);
-    store(out.mobility + at, share / inertia);
+    store(out.mobility + at, share * mobility);
     store(out.stabilisation + at,
           alpha * share / square_root(convection * convection * speed2 + diffusion * diffusion + inertia * inertia));
-    if (!out.balance[0]) continue;
-    Lanes force[D] = {}, body[D] = {};
-    for (int part = 0; part < 2; ++part) {
-      const double* field = part == 0 ? in.force : in.body_force;
-      if (!field) continue;
+  }
+}
+
+/// The nodal loads of the particles and the fluid's weight as densities constant in each cell. A node's load is shared
+/// among its cells by their drag coefficient alpha_e kappa_e (and by volume where there is none): a bed in equilibrium
+/// then has grad p + s = 0 in every cell, also where it ends.
+template <int kind>
+void cell_forces(const CellBatches& mesh, const ForceTerms& in, const CellCoefficients& out) {
+  constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
+  for (int batch = 0; batch < mesh.batches; ++batch) {
+    const int* node = batch_nodes<kind>(mesh, batch);
+    const long at = static_cast<long>(batch) * W;
+    Lanes force[D] = {}, total[D] = {};
+    if (in.load_per_drag) {
       Lanes f[nodes][D];
-      gather(f, field, 3, node);
+      gather(f, in.load_per_drag, 3, node);
+      const Lanes drag = load(in.drag + at);
       for (int a = 0; a < nodes; ++a)
-        for (int d = 0; d < D; ++d) (part == 0 ? force : body)[d] += f[a][d] * (1.0 / nodes);
+        for (int d = 0; d < D; ++d) force[d] += drag * f[a][d];
     }
+    for (int d = 0; d < D; ++d) total[d] = force[d];
+    if (in.weight) {
+      Lanes f[nodes][D];
+      gather(f, in.weight, 3, node);
+      for (int a = 0; a < nodes; ++a)
+        for (int d = 0; d < D; ++d) total[d] += f[a][d] * (1.0 / nodes);
+    }
+    const Lanes share = load(out.pressure_share + at);
     for (int d = 0; d < D; ++d) {
       store(out.force[d] + at, force[d]);
-      store(out.balance[d] + at, -(force[d] + body[d]) / share);
+      store(out.balance[d] + at, -total[d] / share);
     }
   }
 }
@@ -397,6 +420,7 @@ void effective_gradient(const CellBatches& mesh, const MomentumTerms& in, double
 template <int kind>
 constexpr CellLoopTable table = {W,
                                  coefficients<kind>,
+                                 cell_forces<kind>,
                                  momentum<kind, false>,
                                  momentum<kind, true>,
                                  projection<kind>,

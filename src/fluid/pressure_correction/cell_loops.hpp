@@ -28,6 +28,8 @@ class CellLoops {
   void coefficients(const CoefficientTerms& in, const CellCoefficients& out) const {
     table_->coefficients(mesh_, in, out);
   }
+  /// Fills force and balance; void_fraction, pressure_share and drag as coefficients() left them.
+  void cell_forces(const ForceTerms& in, const CellCoefficients& out) const { table_->cell_forces(mesh_, in, out); }
   /// Velocity matrix (added to `values` of a NodalMatrix on this graph) and right side [nodes][3].
   void momentum(const MomentumTerms& in, double* values, double* right) const {
     (in.void_fraction ? table_->momentum_porous : table_->momentum)(mesh_, in, values, right);

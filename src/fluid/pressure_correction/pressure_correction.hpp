@@ -53,6 +53,7 @@ class PressureCorrection : public Fluid {
   Past past() const;
 
   void prepare(double time, double dt, const Past& past);
+  void set_cell_forces(const double* weight);
   void set_momentum_terms();
   void assemble_momentum();
   void add_backflow();
@@ -75,7 +76,7 @@ class PressureCorrection : public Fluid {
   PressureSolver pressure_solver_;
   std::vector<double> mass_;       ///< [nodes] m3, lumped
   std::vector<double> node_size_;  ///< [nodes] m, shortest edge of the local cells around
-  bool has_body_force_ = false;
+  bool has_body_force_ = false, has_weight_ = false;
 
   // The state: fields of step n, n-1 and of the corrections in between.
   std::vector<double> velocity_, old_velocity_, pressure_, increment_, old_increment_;
@@ -88,7 +89,7 @@ class PressureCorrection : public Fluid {
   Bdf bdf_{};
   double matrix_rate_ = 0;  ///< gamma/dt of the assembled pressure matrix
   int matrix_age_ = 0;
-  std::vector<double> convecting_, history_, body_force_, force_density_, drag_now_, right_, solution_, flux_,
+  std::vector<double> convecting_, history_, body_force_, weight_, load_per_drag_, drag_now_, right_, solution_, flux_,
       effective_;
   std::vector<double> cell_values_;  ///< the arrays of CellCoefficients and the increment factors, one after the other
   CellCoefficients cell_{};

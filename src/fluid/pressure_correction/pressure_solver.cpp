@@ -124,7 +124,8 @@ int PressureSolver::solve(std::vector<double> right, std::vector<double>& phi) {
   }
   const PetscScalar* array;
   SILT_PETSC(VecGetArrayRead(solution_, &array));
-  if (bytes) std::memcpy(phi.data(), array, bytes);
+  for (int i = 0; i < mesh.owned_nodes; ++i)
+    if (!fixed_[i]) phi[i] = array[i];
   SILT_PETSC(VecRestoreArrayRead(solution_, &array));
   mesh.copy_from_owner(phi.data(), 1);
   return iterations;
