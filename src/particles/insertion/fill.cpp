@@ -146,7 +146,7 @@ void add_all(const std::vector<PlacedSphere>& spheres, Packing& placed) {
 std::vector<PlacedSphere> fill_region(const InsertionOptions& options, const std::string& prefix, const Region& region,
                                       Packing& placed) {
   // Random sequential addition jams at 38 % (3D) and 55 % (2D) and gets slow well before.
-  const double slow = region.dimension() == 2 ? 0.45 : 0.32;
+  const double slow = region.dimension() == 2 ? 0.4 : 0.25;
   const auto radii = drawn_radii(options, prefix, region);
   if (radii.empty()) return {};
   std::vector<PlacedSphere> result;

@@ -14,7 +14,7 @@ struct PlacedSphere {
   double radius;
 };
 
-/// Fills a region at random without overlaps: by random sequential addition (largest spheres first) up to a third of
+/// Fills a region at random without overlaps: by random sequential addition (largest spheres first) up to a quarter of
 /// solids, above by a random choice among the sites of the widest lattice that has enough of them, cubic or else
 /// hexagonal, each particle moved at random within the gap to its neighbours. Adds the spheres to `placed`. Throws
 /// UserError saying how many fit. `prefix` is the option prefix, for messages.

@@ -7,35 +7,47 @@ namespace silt {
 
 Packing::Bin Packing::bin(const Vec3& centre) const {
   Bin result;
-  for (int d = 0; d < 3; ++d) {
-    result[d] = static_cast<std::int64_t>(std::floor(centre[d] / width_[d]));
-    if (bins_[d]) result[d] = ((result[d] % bins_[d]) + bins_[d]) % bins_[d];
-  }
+  for (int d = 0; d < 3; ++d) result[d] = static_cast<std::int64_t>(std::floor(centre[d] / width_[d]));
   return result;
 }
 
-void Packing::rebin(double largest) {
-  largest_ = largest;
+std::size_t Packing::slot(Bin bin) const {
+  std::uint64_t h = 0x243F6A8885A308D3ull;
   for (int d = 0; d < 3; ++d) {
-    bins_[d] = period_[d] > 0 ? std::max<std::int64_t>(1, static_cast<std::int64_t>(period_[d] / (2 * largest))) : 0;
-    width_[d] = bins_[d] ? period_[d] / static_cast<double>(bins_[d]) : 2 * largest;
+    if (bins_[d]) bin[d] = ((bin[d] % bins_[d]) + bins_[d]) % bins_[d];
+    h = (h ^ static_cast<std::uint64_t>(bin[d])) * 0x9E3779B97F4A7C15ull;
+    h ^= h >> 31;
   }
-  first_.clear();
-  for (size_t i = 0; i < centres_.size(); ++i) {
-    auto& head = first_.emplace(bin(centres_[i]), -1).first->second;
-    next_[i] = head;
-    head = static_cast<int>(i);
+  return h & (first_.size() - 1);
+}
+
+void Packing::link(int sphere) {
+  int& head = first_[slot(bin(centres_[sphere]))];
+  next_[sphere] = head;
+  head = sphere;
+}
+
+void Packing::refile() {
+  for (int d = 0; d < 3; ++d) {
+    bins_[d] = period_[d] > 0 ? std::max<std::int64_t>(1, static_cast<std::int64_t>(period_[d] / (2 * largest_))) : 0;
+    width_[d] = bins_[d] ? period_[d] / static_cast<double>(bins_[d]) : 2 * largest_;
   }
+  std::size_t slots = 64;
+  while (slots < 4 * centres_.size()) slots *= 2;
+  first_.assign(slots, -1);
+  for (int sphere = 0; sphere < count(); ++sphere) link(sphere);
 }
 
 void Packing::add(const Vec3& centre, double radius) {
   centres_.push_back(centre);
   radii_.push_back(radius);
   next_.push_back(-1);
-  if (radius > largest_) return rebin(radius);
-  auto& head = first_.emplace(bin(centre), -1).first->second;
-  next_.back() = head;
-  head = static_cast<int>(centres_.size()) - 1;
+  if (radius > largest_ || first_.size() < 2 * centres_.size()) {
+    largest_ = std::max(largest_, radius);
+    refile();
+  } else {
+    link(count() - 1);
+  }
 }
 
 template <class Visit>
@@ -50,19 +62,13 @@ bool Packing::around(const Vec3& centre, double radius, Visit&& visit) const {
   }
   for (std::int64_t k = low[2]; k <= high[2]; ++k)
     for (std::int64_t j = low[1]; j <= high[1]; ++j)
-      for (std::int64_t i = low[0]; i <= high[0]; ++i) {
-        Bin key{i, j, k};
-        for (int d = 0; d < 3; ++d)
-          if (bins_[d]) key[d] = ((key[d] % bins_[d]) + bins_[d]) % bins_[d];
-        const auto found = first_.find(key);
-        if (found == first_.end()) continue;
-        for (int s = found->second; s >= 0; s = next_[s]) {
+      for (std::int64_t i = low[0]; i <= high[0]; ++i)
+        for (int s = first_[slot({i, j, k})]; s >= 0; s = next_[s]) {
           Vec3 apart = centre - centres_[s];
           for (int d = 0; d < 3; ++d)
             if (period_[d] > 0) apart[d] -= period_[d] * std::round(apart[d] / period_[d]);
           if (visit(s, apart.norm())) return true;
         }
-      }
   return false;
 }
 

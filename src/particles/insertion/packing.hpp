@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "base/vector.hpp"
@@ -28,18 +27,15 @@ class Packing {
 
  private:
   using Bin = std::array<std::int64_t, 3>;
-  struct Hash {
-    std::size_t operator()(const Bin& b) const {
-      std::uint64_t h = 0x243F6A8885A308D3ull;
-      for (auto v : b) h = (h ^ static_cast<std::uint64_t>(v)) * 0x9E3779B97F4A7C15ull, h ^= h >> 31;
-      return h;
-    }
-  };
   /// Calls visit(index, distance) for spheres that may touch, until it returns true.
   template <class Visit>
   bool around(const Vec3& centre, double radius, Visit&& visit) const;
+  /// Place in first_ of a bin, by hashing: spheres of other bins may share it.
+  std::size_t slot(Bin bin) const;
   Bin bin(const Vec3& centre) const;
-  void rebin(double largest);
+  void link(int sphere);
+  /// Files all spheres again, for a larger radius or more spheres.
+  void refile();
 
   Vec3 period_;
   double largest_ = 0;                  ///< m, largest radius that the bins allow for
@@ -47,8 +43,7 @@ class Packing {
   std::array<std::int64_t, 3> bins_{};  ///< per period, 0 where not periodic
   std::vector<Vec3> centres_;
   std::vector<double> radii_;
-  std::vector<int> next_;  ///< next sphere of the same bin, -1: last
-  std::unordered_map<Bin, int, Hash> first_;
+  std::vector<int> first_, next_;  ///< first sphere of a slot, next one of the same slot; -1: none
 };
 
 }  // namespace silt
