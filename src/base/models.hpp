@@ -8,7 +8,8 @@
 namespace silt {
 
 /// A list of physical models among which the user picks one by name: `using Normal = Models<Linear, Tsuji>;`.
-/// A model has `static constexpr const char* name` and `void options(OptionGroup&)`; the list's line is its
+/// A model has `static constexpr const char* name`, `void options(OptionGroup&)` and, where its options depend on each
+/// other, `void check() const` (throws UserError); the list's line is its
 /// registration.
 template <class... Model>
 struct Models {
@@ -22,7 +23,12 @@ struct Models {
     options.read(prefix, choice);
     Any chosen;
     ((choice.type == Model::name ? void(chosen = Model{}) : void()), ...);
-    std::visit([&](auto& model) { options.read(prefix, model); }, chosen);
+    std::visit(
+        [&](auto& model) {
+          options.read(prefix, model);
+          if constexpr (requires { model.check(); }) model.check();
+        },
+        chosen);
     return chosen;
   }
 

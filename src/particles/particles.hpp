@@ -18,8 +18,8 @@ struct FluidAction {
   double force[3] = {
       0, 0,
       0};  ///< N, every other fluid force, constant over the fluid step (pressure gradient, buoyancy, owed impulse)
-  double held = 0;                       ///< 0: free, 1: held by contacts (coupling keeps it here between steps)
-  double owed[3] = {0, 0, 0};            ///< N s, owed by the last fluid step, given as a force over the next; coupling keeps it
+  double held = 0;             ///< 0: free, 1: held by contacts (coupling keeps it here between steps)
+  double owed[3] = {0, 0, 0};  ///< N s, owed by the last fluid step, given as a force over the next; coupling keeps it
   double impulse[3] = {0, 0, 0};         ///< N s, drag impulse received since the last reset; the engine adds
   double start_velocity[3] = {0, 0, 0};  ///< m/s, velocity at the start of the fluid step; set by the coupling
 };
@@ -39,6 +39,18 @@ struct Seed {
   int material = 0;   ///< index into Materials
 };
 
+/// A particle that left the domain through an outlet (or was lost) during the last advance(), with its last state.
+struct Departed {
+  std::int64_t id = 0;
+  Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
+  double mass = 0;
+  int cell = -1;       ///< the last local cell that contained it
+  int boundary = -1;   ///< index into Mesh::boundaries
+  FluidAction action;  ///< with the drag impulse received in this advance
+};
+
+class Materials;
+
 /// The soft-sphere particles of this rank: those whose centre lies in a local cell.
 /// Indices are valid until the next advance() or add(); `id` is for ever.
 class Particles {
@@ -46,6 +58,9 @@ class Particles {
   /// Reads materials, contact laws, walls, insertions; creates and settles the particles. Collective.
   Particles(const Mesh& mesh, Options& options, const Vec3& gravity);
   ~Particles();
+
+  /// Creates particles; the seeds are the same on every rank. Throws UserError for one outside the mesh. Collective.
+  void add(const std::vector<Seed>& seeds);
 
   int owned() const;
   long long total() const;  ///< on all ranks
@@ -66,12 +81,17 @@ class Particles {
 
   /// Moves all particles by dt (in substeps not longer than time_step()). Collective.
   ParticleStep advance(double time, double dt);
+  /// Those that left during the last advance() and were owned by this rank.
+  const std::vector<Departed>& departed() const;
+  const Materials& materials() const;
   double time_step() const;
   /// "Hertz contact time, 20 steps a contact": the bound that limits time_step().
   std::string time_step_reason() const;
 
   /// Global sums. Collective.
   Vec3 momentum() const;
+  /// About `origin`, spin included (not meaningful across periodic sides).
+  Vec3 angular_momentum(const Vec3& origin) const;
   double kinetic_energy() const;
   double rotational_energy() const;
   double total_mass() const;

@@ -3,7 +3,7 @@
 
 /// Force laws are written once for any number type: double (reference path, wall helpers, tests), a pack of doubles
 /// (the vectorised sweep, pack.hpp) or a dual number. They use + - * /, comparisons, sqrt, and the functions below.
-#define SILT_INLINE [[gnu::always_inline]] inline
+#define SILT_INLINE __attribute__((always_inline)) inline
 
 namespace silt {
 

@@ -1,0 +1,60 @@
+#pragma once
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace silt {
+
+/// An array of plain records aligned for vector loads (64 bytes; whole 2 MB pages once it is large). Growing keeps the
+/// contents; new entries are zero.
+template <class T>
+class Aligned {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  Aligned() = default;
+  Aligned(Aligned&& other) noexcept { swap(other); }
+  Aligned& operator=(Aligned&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~Aligned() { std::free(data_); }
+
+  void swap(Aligned& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(capacity_, other.capacity_);
+  }
+  /// Makes room for at least `count` entries.
+  void reserve(std::size_t count) {
+    if (count <= capacity_) return;
+    constexpr std::size_t page = std::size_t(2) << 20;
+    std::size_t bytes = (count + count / 8 + 64) * sizeof(T);
+    const std::size_t alignment = bytes > 2 * page ? page : 64;
+    bytes = (bytes + alignment - 1) / alignment * alignment;
+    void* memory = std::aligned_alloc(alignment, bytes);
+    if (!memory) throw std::bad_alloc();
+    if (alignment == page) madvise(memory, bytes, MADV_HUGEPAGE);
+    const std::size_t kept = capacity_ * sizeof(T);
+    if (kept) std::memcpy(memory, data_, kept);
+    std::memset(static_cast<char*>(memory) + kept, 0, bytes - kept);
+    std::free(data_);
+    data_ = static_cast<T*>(memory);
+    capacity_ = bytes / sizeof(T);
+  }
+  std::size_t capacity() const { return capacity_; }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t capacity_ = 0;
+};
+
+}  // namespace silt

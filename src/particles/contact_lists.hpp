@@ -1,0 +1,70 @@
+#pragma once
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "particles/aligned.hpp"
+#include "particles/particle_rows.hpp"
+#include "particles/store.hpp"
+#include "particles/sweep.hpp"
+
+namespace silt {
+
+/// What the contacts between particles remember, kept by global ids while particles are reordered, migrate or become
+/// ghosts: for every owned particle the partners it touches, {partner's id, history seen from the lower id}.
+class ContactMemory {
+ public:
+  explicit ContactMemory(int components) : rows(1 + components) {}
+  ParticleRows rows;
+  int components() const { return rows.width - 1; }
+  /// The history of particle p with `other`, or null when they did not touch.
+  const double* find(int p, std::int64_t other) const {
+    for (int k = rows.start[p]; k < rows.start[p + 1]; ++k)
+      if (std::bit_cast<std::int64_t>(rows.row(k)[0]) == other) return rows.row(k) + 1;
+    return nullptr;
+  }
+};
+
+/// The pairs of particles that touch, with packed history, and the pairs near enough to touch before the next rebuild.
+/// In both, i is the particle with the lower global id, so that all ranks that know a pair compute the same bits.
+class ContactLists {
+ public:
+  explicit ContactLists(int components) : components_(components) {}
+
+  int contacts() const { return contacts_; }
+  int candidates() const { return candidates_; }
+  const int* contact_i() const { return contact_i_.data(); }
+  const int* contact_j() const { return contact_j_.data(); }
+  double history(int component, int contact) const { return history_[component * stride_ + contact]; }
+  int components() const { return components_; }
+
+  /// What the contacts remember, for every owned particle of the store the lists belong to.
+  void gather(const Store& store, ContactMemory& memory) const;
+  void clear() { contacts_ = candidates_ = 0; }
+  void add_candidate(int i, int j);
+  /// With the history it had, or null for a new contact.
+  void add_contact(int i, int j, const double* history, std::size_t history_step);
+
+  /// Pads the lists to whole packs with the dummy pair (dummy, dummy + 1).
+  void pad(int dummy);
+  PairArrays pairs();
+  /// Fills in the candidates' arrays and room for their answer.
+  void fill(CandidateSweep& sweep);
+  int* leaving();
+  /// Moves the candidates at the places found by the sweep to the contacts, and those contacts that ended back.
+  void enter(const int* places, int count, int dummy);
+  void leave(const int* places, int count, int dummy);
+
+ private:
+  void reserve_contacts(int count);
+  void pad_contacts(int dummy);
+  void pad_candidates(int dummy);
+
+  int components_, contacts_ = 0, candidates_ = 0;
+  std::size_t stride_ = 0;
+  Aligned<int> contact_i_, contact_j_, candidate_i_, candidate_j_;
+  Aligned<double> history_;  ///< [components][stride]
+  std::vector<int> places_;
+};
+
+}  // namespace silt

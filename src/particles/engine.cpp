@@ -1,0 +1,483 @@
+#include "particles/engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "particles/insertion/insertion.hpp"
+
+namespace silt {
+namespace {
+
+template <class T>
+T read(Options& options, const char* prefix) {
+  T object;
+  options.read(prefix, object);
+  return object;
+}
+
+std::vector<std::string> names_of(const Materials& materials) {
+  std::vector<std::string> names;
+  for (int m = 0; m < materials.count(); ++m) names.push_back(materials[m].name);
+  return names;
+}
+
+}  // namespace
+
+Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity)
+    : mesh(on_mesh),
+      materials(options),
+      contacts(0),
+      wall_contacts(0),
+      options_(read<ParticleOptions>(options, "particles")),
+      laws_(options, materials),
+      walls_(on_mesh, options, names_of(materials)),
+      migration_(on_mesh, communicator_),
+      halo_(communicator_),
+      kernels_(choose_kernels(options_.instructions.c_str())),
+      gravity_(gravity),
+      plane_(options_.plane || on_mesh.dimension == 2),
+      memory_(laws_.history_components()),
+      wall_memory_(4 + laws_.history_components()) {
+  contacts = ContactLists(laws_.history_components());
+  wall_contacts = WallContacts(laws_.history_components());
+  if (plane_) gravity_[2] = 0;
+  for (int d = 0; d < 3; ++d)
+    if (mesh.periodic[d]) {
+      periods_.length[d] = migration_.locator().period()[d];
+      periods_.inverse[d] = 1 / periods_.length[d];
+      periods_.any = true;
+    }
+  wall_force.assign(mesh.boundaries.size(), Vec3::Zero());
+  wall_torque = wall_force;
+  wall_force_sum_.assign(3 * mesh.boundaries.size() + 3, 0.0);
+  wall_torque_sum_ = wall_force_sum_;
+  store.reserve(0);
+  const std::vector<Seed> seeds = make_insertions(walls_, options, names_of(materials));
+  if (!seeds.empty()) add(seeds);
+}
+
+void Engine::stop_if_any(const std::string& text) const {
+  int size = 1, rank = 0;
+  MPI_Comm_size(communicator_, &size);
+  MPI_Comm_rank(communicator_, &rank);
+  int first = text.empty() ? size : rank, lowest = first;
+  MPI_Allreduce(&first, &lowest, 1, MPI_INT, MPI_MIN, communicator_);
+  if (lowest == size) return;
+  int length = static_cast<int>(text.size());
+  MPI_Bcast(&length, 1, MPI_INT, lowest, communicator_);
+  std::string told = rank == lowest ? text : std::string(length, ' ');
+  MPI_Bcast(told.data(), length, MPI_CHAR, lowest, communicator_);
+  throw RunError(told);
+}
+
+std::string Engine::describe(const Motion& motion, std::int64_t id) const {
+  return fmt::format(
+      "particle {} at ({:.6g}, {:.6g}, {:.6g}) m, velocity ({:.6g}, {:.6g}, {:.6g}) m/s, spin ({:.6g}, {:.6g}, {:.6g}) "
+      "rad/s, radius "
+      "{:.6g} m, rank {}",
+      id, motion.position[0], motion.position[1], motion.position[2], motion.velocity[0], motion.velocity[1],
+      motion.velocity[2], motion.spin[0], motion.spin[1], motion.spin[2], motion.radius, mpi_rank());
+}
+
+void Engine::add(const std::vector<Seed>& seeds) {
+  std::vector<Vec3> points;
+  points.reserve(seeds.size());
+  for (const auto& seed : seeds) {
+    if (seed.material < 0 || seed.material >= materials.count())
+      throw UserError("particles need a material: give -material_<name>_density and the other properties");
+    if (!(seed.radius > 0)) throw UserError(fmt::format("a particle radius of {} m; allowed: above 0", seed.radius));
+    points.push_back(seed.position);
+  }
+  const std::vector<Place> places = migration_.locator().claim(points);
+  long long here = 0;
+  for (const auto& place : places) here += place.inside();
+  if (mpi_sum(here) != static_cast<long long>(seeds.size())) {
+    std::vector<int> held(seeds.size()), found(seeds.size());
+    for (std::size_t k = 0; k < seeds.size(); ++k) held[k] = places[k].inside();
+    MPI_Allreduce(held.data(), found.data(), static_cast<int>(seeds.size()), MPI_INT, MPI_MAX, communicator_);
+    const auto k = static_cast<std::size_t>(std::find(found.begin(), found.end(), 0) - found.begin());
+    throw UserError(fmt::format("particle {} of {} to be added lies outside the mesh: ({:g}, {:g}, {:g}) m", k + 1,
+                                seeds.size(), seeds[k].position[0], seeds[k].position[1], seeds[k].position[2]));
+  }
+  if (!detached_) detach();
+  store.ghosts = 0;
+  store.id.resize(store.owned);
+  double fastest = 0;
+  SmallestRadii smallest{std::vector<double>(materials.count(), infinity)};
+  for (std::size_t k = 0; k < seeds.size(); ++k) {
+    const Seed& seed = seeds[k];
+    fastest = std::max(fastest, seed.velocity.norm());
+    largest_radius_ = std::max(largest_radius_, seed.radius);
+    if (!places[k].inside()) continue;
+    const Vec3 position = migration_.locator().wrapped(seed.position, places[k]);
+    const int p = store.owned++;
+    store.reserve(store.owned);
+    Motion& motion = store.motion[p];
+    motion = Motion{};
+    for (int d = 0; d < 3; ++d) {
+      motion.position[d] = position[d];
+      motion.velocity[d] = seed.velocity[d];
+      motion.spin[d] = seed.spin[d];
+    }
+    if (plane_) motion.velocity[2] = motion.spin[0] = motion.spin[1] = 0;
+    motion.radius = seed.radius;
+    const double mass = *materials[seed.material].density * 4.0 / 3.0 * std::numbers::pi * std::pow(seed.radius, 3);
+    motion.inverse_mass = 1 / mass;
+    motion.material = seed.material;
+    store.present[p] = store.previous[p] = Load{};
+    store.id.push_back(next_id_ + static_cast<std::int64_t>(k));
+    store.cell.push_back(places[k].cell);
+    store.action.emplace_back();
+    memory_.rows.append(nullptr, 0);
+    wall_memory_.append(nullptr, 0);
+    impulses.added += mass * vec3(motion.velocity);
+  }
+  next_id_ += static_cast<std::int64_t>(seeds.size());
+  total += static_cast<long long>(seeds.size());
+
+  for (int p = 0; p < store.owned; ++p) {
+    double& radius = smallest.radius[static_cast<int>(store.motion[p].material)];
+    radius = std::min(radius, store.motion[p].radius);
+    fastest = std::max(fastest, vec3(store.motion[p].velocity).norm());
+  }
+  MPI_Allreduce(MPI_IN_PLACE, smallest.radius.data(), materials.count(), MPI_DOUBLE, MPI_MIN, communicator_);
+  const double fall = std::sqrt(2 * gravity_.norm() * (mesh.upper - mesh.lower).norm());
+  limit = limit_step(options_, materials, laws_, smallest, options_.speed.value_or(std::max(mpi_max(fastest), fall)));
+
+  skin_ = options_.skin > 0 ? options_.skin : 0.2 * largest_radius_;
+  const double reach = 2 * largest_radius_ + skin_;
+  for (int d = 0; d < 3; ++d)
+    if (mesh.periodic[d] && periods_.length[d] < 2 * reach)
+      throw UserError(
+          fmt::format("the periodic length {:g} m is too short for particles of diameter {:g} m: two of them "
+                      "would touch twice; allowed: at least {:g} m",
+                      periods_.length[d], 2 * largest_radius_, 2 * reach));
+  started_ = false;
+}
+
+void Engine::prepare_fluid(double h) {
+  bool acts = false;
+  for (const auto& action : store.action)
+    acts |= action.exchange != 0 || action.force[0] != 0 || action.force[1] != 0 || action.force[2] != 0;
+  fluid_ = mpi_any(acts);
+  if (!fluid_) return;
+  store.drag.reserve(store.owned);
+  for (int p = 0; p < store.owned; ++p) {
+    const FluidAction& action = store.action[p];
+    DragStep step{};
+    for (int d = 0; d < 3; ++d) {
+      step.velocity[d] = action.velocity[d];
+      step.acceleration[d] = action.force[d] * store.motion[p].inverse_mass;
+    }
+    step.rate = action.exchange * store.motion[p].inverse_mass;
+    const double z = step.rate * h;
+    // phi = (1 - exp(-z))/rate, psi = (h - phi)/rate; their series where the differences would lose digits.
+    step.first = z > 0 ? -std::expm1(-z) / step.rate : h;
+    step.second = z > 1e-2
+                      ? (h - step.first) / step.rate
+                      : h * h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z * (1.0 / 120 - z * (1.0 / 720 - z / 5040)))));
+    step.corrector = step.second / h;
+    store.drag[p] = step;
+  }
+}
+
+void Engine::collect_fluid() {
+  if (!fluid_) return;
+  for (int p = 0; p < store.owned; ++p)
+    for (int d = 0; d < 3; ++d) {
+      store.action[p].impulse[d] += store.drag[p].impulse[d];
+      impulses.drag[d] += store.drag[p].impulse[d];
+      store.drag[p].impulse[d] = 0;
+    }
+}
+
+void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
+  long long lost = 0;
+  std::string text;
+  for (const Gone& one : gone) {
+    Departed leaving;
+    leaving.id = one.id;
+    leaving.position = vec3(one.motion.position);
+    leaving.velocity = vec3(one.motion.velocity);
+    leaving.mass = 1 / one.motion.inverse_mass;
+    leaving.cell = one.cell;
+    leaving.boundary = one.boundary;
+    leaving.action = one.action;
+    if (within_step) {
+      // It ends the step without contacts at its new place: the corrector for a force that has gone to zero.
+      const double z = one.action.exchange * one.motion.inverse_mass * h;
+      const double phi = z > 0 ? -std::expm1(-z) * h / z : h;
+      const double corrector = z > 1e-2 ? (1 - phi / h) * h / z : h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z / 120)));
+      for (int d = 0; d < (plane_ ? 2 : 3); ++d) {
+        leaving.velocity[d] -= corrector * one.motion.inverse_mass * one.carried.force[d];
+        const double drag = -(corrector - 0.5 * h) * one.carried.force[d];
+        leaving.action.impulse[d] += drag;
+        impulses.drag[d] += drag;
+      }
+    }
+    impulses.removed -= leaving.mass * leaving.velocity;
+    departed.push_back(leaving);
+    if (one.boundary < 0 || walls_.role(one.boundary) == BoundaryRole::wall) {
+      ++lost;
+      if (text.empty())
+        text = fmt::format("lost {} has passed {}{}", describe(one.motion, one.id),
+                           one.boundary < 0 ? "no boundary" : "the wall ",
+                           one.boundary < 0 ? "" : mesh.boundaries[one.boundary]);
+    }
+  }
+  if (options_.lost == "stop")
+    stop_if_any(text);
+  else if (lost > 0)
+    fmt::print(stderr, "silt: warning: {} ({} lost on this rank)\n", text, lost);
+}
+
+void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
+  ++rebuilds_;
+  if (fluid_) collect_fluid();
+  std::string fast;
+  if (within_step)
+    for (int p = 0; p < store.owned && fast.empty(); ++p)
+      if (h * vec3(store.motion[p].velocity).norm() > store.motion[p].radius)
+        fast =
+            fmt::format("{} moves more than its radius in a step of {:g} s", describe(store.motion[p], store.id[p]), h);
+  stop_if_any(fast);
+
+  if (!detached_) detach();
+  const std::vector<Gone> gone = migration_.run(store, carried, memory_.rows, wall_memory_);
+  const long long gone_everywhere = mpi_sum(static_cast<long long>(gone.size()));
+  if (gone_everywhere > 0) {
+    depart(gone, within_step, h);
+    removed += gone_everywhere;
+    total -= gone_everywhere;
+  }
+  const long long counted = mpi_sum(static_cast<long long>(store.owned));
+  if (counted != total) throw RunError(fmt::format("{} particles are accounted for, but {} are there", total, counted));
+
+  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
+  for (int p = 0; p < store.owned; ++p) {
+    const auto position = vec3(store.motion[p].position);
+    lower = p == 0 ? Vec3(position) : lower.cwiseMin(position);
+    upper = p == 0 ? Vec3(position) : upper.cwiseMax(position);
+  }
+  const double gap = laws_.setup().leave_gap;
+  const double reach = 2 * largest_radius_ + gap + skin_;
+  const CellGrid grid(lower, upper, mesh.lower, periods_, reach, store.owned);
+  const std::vector<int> order = order_along(grid, store);
+  store.reorder(order, carried);
+  memory_.rows.reorder(order);
+  wall_memory_.reorder(order);
+  halo_.build(store, periods_, reach);
+  store.reserve(store.all());
+  store.place_dummies();
+  find_pairs(grid, store, periods_, gap + skin_, gap, memory_, contacts);
+  contacts.pad(store.dummy());
+  wall_contacts.restore(wall_memory_);
+  detached_ = false;
+  walls_.list(store.motion.data(), store.owned, skin_);
+  for (int p = 0; p < store.owned; ++p)
+    for (int d = 0; d < 3; ++d) store.origin[p].entry[d] = store.motion[p].position[d];
+  if (fluid_ && within_step) prepare_fluid(h);
+  sum_up();
+}
+
+void Engine::detach() {
+  contacts.gather(store, memory_);
+  wall_contacts.gather(store.owned, wall_memory_);
+  contacts.clear();
+  detached_ = true;
+}
+
+void Engine::sum_up() {
+  mass_ = 0;
+  fluid_force_.setZero();
+  for (int p = 0; p < store.owned; ++p) mass_ += 1 / store.motion[p].inverse_mass;
+  if (fluid_)
+    for (const auto& action : store.action) fluid_force_ += vec3(action.force);
+  if (plane_) fluid_force_[2] = 0;
+}
+
+void Engine::evaluate(double time, double dt) {
+  const LawSetup& setup = laws_.setup();
+  CandidateSweep search;
+  search.motion = store.motion.data();
+  search.periods = periods_;
+  contacts.fill(search);
+  kernels_.candidates(search);
+  contacts.enter(search.entering, search.entering_count, store.dummy());
+
+  PairSweep sweep;
+  sweep.motion = store.motion.data();
+  sweep.load = store.present.data();
+  sweep.pairs = contacts.pairs();
+  sweep.laws = setup;
+  sweep.periods = periods_;
+  sweep.dt = dt;
+  sweep.deepest_share = options_.overlap_limit;
+  sweep.leaving = contacts.leaving();
+  kernels_.pairs(sweep);
+  if (sweep.too_deep >= 0) trouble_ = describe_deepest(sweep.too_deep);
+  contacts.leave(sweep.leaving, sweep.leaving_count, store.dummy());
+
+  walls_.points(store.motion.data(), time, wall_contacts.next());
+  wall_contacts.adopt();
+  std::fill(wall_force_sum_.begin(), wall_force_sum_.end(), 0.0);
+  std::fill(wall_torque_sum_.begin(), wall_torque_sum_.end(), 0.0);
+  WallSweep walls;
+  walls.motion = store.motion.data();
+  walls.load = store.present.data();
+  walls.laws = setup;
+  walls.dt = dt;
+  walls.wall_force = reinterpret_cast<double(*)[3]>(wall_force_sum_.data());
+  walls.wall_torque = reinterpret_cast<double(*)[3]>(wall_torque_sum_.data());
+  wall_contacts.fill(walls);
+  kernels_.walls(walls);
+  wall_total_.setZero();
+  for (std::size_t b = 0; b < wall_force.size(); ++b) {
+    wall_force[b] = vec3(&wall_force_sum_[3 * b]);
+    wall_torque[b] = vec3(&wall_torque_sum_[3 * b]);
+    wall_total_ += wall_force[b];
+  }
+  if (plane_) wall_total_[2] = 0;
+  for (const WallPoint& point : wall_contacts.points()) {
+    const Motion& motion = store.motion[point.particle];
+    if (motion.radius - point.distance > options_.overlap_limit * motion.radius)
+      trouble_ = fmt::format("{} overlaps the wall {} by {:.4g} of its radius, limit {:g} (-particles_overlap_limit)",
+                             describe(motion, store.id[point.particle]), mesh.boundaries[point.boundary],
+                             1 - point.distance / motion.radius, options_.overlap_limit);
+  }
+}
+
+std::string Engine::describe_deepest(int contact) const {
+  const int i = contacts.contact_i()[contact], j = contacts.contact_j()[contact];
+  return fmt::format("{} overlaps another by more than {:g} of the smaller radius (-particles_overlap_limit): {}",
+                     describe(store.motion[i], store.id[i]), options_.overlap_limit,
+                     describe(store.motion[j], store.id[j]));
+}
+
+std::string Engine::find_bad() const {
+  for (int p = 0; p < store.owned; ++p) {
+    const Motion& motion = store.motion[p];
+    double sum = 0;
+    for (int d = 0; d < 3; ++d) sum += motion.position[d] + motion.velocity[d] + motion.spin[d];
+    if (!std::isfinite(sum)) return "not a number: " + describe(motion, store.id[p]);
+  }
+  return "a particle's position is not a number";
+}
+
+Integration Engine::pass(double h) {
+  Integration step;
+  step.motion = store.motion.data();
+  step.present = store.present.data();
+  step.previous = store.previous.data();
+  step.drag = fluid_ ? store.drag.data() : nullptr;
+  step.origin = reinterpret_cast<const double(*)[4]>(store.origin.data());
+  step.count = store.owned;
+  step.dt = h;
+  for (int d = 0; d < 3; ++d) step.gravity[d] = gravity_[d];
+  if (plane_) {
+    step.move[2] = 0;
+    step.turn[0] = step.turn[1] = 0;
+  }
+  return step;
+}
+
+void Engine::start(double time) {
+  rebuild(store.present, false, 0);
+  for (int p = 0; p < store.all(); ++p) store.present[p] = Load{};
+  trouble_.clear();
+  evaluate(time, 0);
+  try {
+    stop_if_any(trouble_);
+  } catch (const RunError& error) {
+    throw UserError(std::string("at the start ") + error.what());
+  }
+  started_ = true;
+}
+
+ParticleStep Engine::advance(double time, double dt) {
+  ParticleStep result;
+  departed.clear();
+  rebuilds_ = 0;
+  if (total == 0 || dt <= 0) return result;
+  if (!started_) start(time);
+  const int substeps = std::max(1, static_cast<int>(std::ceil(dt / limit.step * (1 - 1e-12))));
+  const double h = dt / substeps;
+  prepare_fluid(h);
+  sum_up();
+  const bool alone = mpi_size() == 1;
+  trouble_.clear();
+  for (int s = 0; s < substeps; ++s) {
+    impulses.gravity += h * mass_ * gravity_;
+    impulses.fluid_force += h * fluid_force_;
+
+    Integration step = pass(h);
+    step.correct = s > 0;
+    step.drift = true;
+    kernels_.integrate(step);
+    store.present.swap(store.previous);
+    if (!std::isfinite(step.check)) trouble_ = find_bad();
+    int state = !trouble_.empty() ? 2 : step.largest_square > 0.25 * skin_ * skin_ ? 1 : 0;
+    if (!alone) MPI_Allreduce(MPI_IN_PLACE, &state, 1, MPI_INT, MPI_MAX, communicator_);
+    if (state == 2) stop_if_any(trouble_);
+    if (state == 1)
+      rebuild(store.previous, true, h);
+    else
+      halo_.forward(store);
+    const Vec3 before = wall_total_;
+    evaluate(time + (s + 1) * h, h);
+    impulses.walls += 0.5 * h * (before + wall_total_);
+  }
+  Integration step = pass(h);
+  step.correct = true;
+  kernels_.integrate(step);
+  collect_fluid();
+  stop_if_any(trouble_);
+  if (!migration_.all_at_home(store)) rebuild(store.present, false, h);
+  result.substeps = substeps;
+  result.rebuilds = rebuilds_;
+  result.removed = removed;
+  largest_overlap(result);
+  return result;
+}
+
+void Engine::largest_overlap(ParticleStep& step) const {
+  long long touching = wall_contacts.count();
+  double largest = 0;
+  for (int k = 0; k < contacts.contacts(); ++k) {
+    const int i = contacts.contact_i()[k], j = contacts.contact_j()[k];
+    touching += i < store.owned;  // a pair across ranks is counted by the owner of its first particle
+    const Motion &a = store.motion[i], &b = store.motion[j];
+    double square = 0;
+    for (int d = 0; d < 3; ++d) {
+      double distance = a.position[d] - b.position[d];
+      distance -= periods_.length[d] * std::nearbyint(distance * periods_.inverse[d]);
+      square += distance * distance;
+    }
+    largest = std::max(largest, (a.radius + b.radius - std::sqrt(square)) / std::min(a.radius, b.radius));
+  }
+  for (const WallPoint& point : wall_contacts.points())
+    largest = std::max(largest, 1 - point.distance / store.motion[point.particle].radius);
+  step.contacts = mpi_sum(touching);
+  step.largest_overlap = mpi_max(largest);
+}
+
+void Engine::settle(const SettleOptions& options) {
+  if (options.time <= 0 || total == 0) return;
+  laws_.scale_friction(options.friction_factor);
+  started_ = false;
+  constexpr int chunks = 100;
+  for (int c = 0; c < chunks; ++c) {
+    advance(-options.time * (chunks - c) / chunks, options.time / chunks);
+    double square = 0;
+    for (int p = 0; p < store.owned; ++p) square += vec3(store.motion[p].velocity).squaredNorm();
+    if (total == 0 || mpi_sum(square) < total * options.speed * options.speed) break;
+  }
+  laws_.scale_friction(1);
+  impulses = {};
+}
+
+}  // namespace silt

@@ -1,0 +1,101 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "particles/contact_laws.hpp"
+#include "particles/contact_lists.hpp"
+#include "particles/halo.hpp"
+#include "particles/materials.hpp"
+#include "particles/migration.hpp"
+#include "particles/neighbours.hpp"
+#include "particles/particle_options.hpp"
+#include "particles/particles.hpp"
+#include "particles/store.hpp"
+#include "particles/time_step.hpp"
+#include "particles/wall_contacts.hpp"
+#include "particles/walls/walls.hpp"
+
+namespace silt {
+
+/// A communicator of our own, so that no message is taken for another's.
+class OwnCommunicator {
+ public:
+  OwnCommunicator() { MPI_Comm_dup(PETSC_COMM_WORLD, &communicator_); }
+  ~OwnCommunicator() { MPI_Comm_free(&communicator_); }
+  OwnCommunicator(const OwnCommunicator&) = delete;
+  OwnCommunicator& operator=(const OwnCommunicator&) = delete;
+  operator MPI_Comm() const { return communicator_; }
+
+ private:
+  MPI_Comm communicator_;
+};
+
+/// What is behind Particles: the parts of the particle solver and the loop over the substeps.
+class Engine {
+ public:
+  Engine(const Mesh& mesh, Options& options, const Vec3& gravity);
+
+  void add(const std::vector<Seed>& seeds);
+  ParticleStep advance(double time, double dt);
+  /// Lets the particles fall without fluid until the options say they are at rest.
+  void settle(const SettleOptions& options);
+
+  /// Momentum etc. that this rank's particles received since the last take_impulses().
+  Particles::Impulses impulses;
+  Store store;
+  std::vector<Departed> departed;
+  long long total = 0, removed = 0;
+  StepLimit limit;
+  const Mesh& mesh;
+  Materials materials;
+  ContactLists contacts;
+  WallContacts wall_contacts;
+  std::vector<Vec3> wall_force, wall_torque;  ///< of the last substep, on the particles, per boundary, this rank
+
+ private:
+  void prepare_fluid(double h);
+  void collect_fluid();
+  void start(double time);
+  void rebuild(Aligned<Load>& carried, bool within_step, double h);
+  void depart(const std::vector<Gone>& gone, bool within_step, double h);
+  void evaluate(double time, double dt);
+  /// Takes the contacts' memories out of the lists, whose indices are about to change.
+  void detach();
+  /// Sums that change only when particles come or go.
+  void sum_up();
+  Integration pass(double h);
+  std::string describe(const Motion& motion, std::int64_t id) const;
+  /// Throws RunError with the text of the lowest rank that has one, on all ranks; does nothing when none has.
+  /// Collective.
+  void stop_if_any(const std::string& text) const;
+  std::string describe_deepest(int contact) const;
+  std::string find_bad() const;
+  void largest_overlap(ParticleStep& step) const;
+
+  ParticleOptions options_;
+  OwnCommunicator communicator_;
+  ContactLaws laws_;
+  Walls walls_;
+  Migration migration_;
+  Halo halo_;
+  const Kernels& kernels_;
+  Vec3 gravity_;
+  bool plane_;
+  Periods periods_;
+  double skin_ = 0, largest_radius_ = 0;
+  std::int64_t next_id_ = 0;
+  bool started_ = false;  ///< lists and present forces are valid
+  bool fluid_ = false;    ///< store.drag is in use in this advance
+  bool detached_ = true;  ///< the memories are outside the lists
+  ContactMemory memory_;
+  ParticleRows wall_memory_;
+  double mass_ = 0;  ///< kg, of this rank's particles
+  Vec3 fluid_force_ = Vec3::Zero();
+  int rebuilds_ = 0;
+  std::string trouble_;  ///< what this rank found in the last evaluation
+  std::vector<double> wall_force_sum_, wall_torque_sum_;
+  Vec3 wall_total_ = Vec3::Zero();
+};
+
+}  // namespace silt

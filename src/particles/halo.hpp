@@ -1,0 +1,32 @@
+#pragma once
+#include <mpi.h>
+
+#include <vector>
+
+#include "particles/store.hpp"
+
+namespace silt {
+
+/// The ghosts of a rank: copies of other ranks' particles near its own. Their positions are those of the owner, not
+/// shifted across periodic sides, so that distances between nearest images have the same bits on both ranks.
+class Halo {
+ public:
+  explicit Halo(MPI_Comm communicator) : communicator_(communicator) {}
+
+  /// Chooses who needs which particle (nearer than `cutoff` to the box around the other rank's particles, across
+  /// periodic sides too) and fetches the ghosts. Collective.
+  void build(Store& store, const Periods& periods, double cutoff);
+  /// Refreshes position, velocity and spin of the ghosts. Collective among neighbours.
+  void forward(Store& store);
+  /// Bytes this rank sends in one forward().
+  std::size_t bytes() const { return send_index_.size() * 9 * sizeof(double); }
+
+ private:
+  MPI_Comm communicator_;
+  std::vector<int> send_rank_, send_start_, send_index_;  ///< per neighbour a run of send_index_
+  std::vector<int> receive_rank_, receive_start_;
+  std::vector<double> send_buffer_, receive_buffer_;
+  std::vector<MPI_Request> requests_;
+};
+
+}  // namespace silt

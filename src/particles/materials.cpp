@@ -1,0 +1,72 @@
+#include "particles/materials.hpp"
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+
+namespace silt {
+namespace {
+
+PairProperties mean_of(const Material& a, const Material& b) {
+  const auto shear = [](const Material& m) { return m.young_modulus / (2 * (1 + m.poisson_ratio)); };
+  const auto plane = [](const Material& m) { return (1 - m.poisson_ratio * m.poisson_ratio) / m.young_modulus; };
+  PairProperties pair;
+  pair.effective_young = 1 / (plane(a) + plane(b));
+  pair.effective_shear = 1 / ((2 - a.poisson_ratio) / shear(a) + (2 - b.poisson_ratio) / shear(b));
+  pair.restitution = 0.5 * (a.restitution + b.restitution);
+  pair.friction = 0.5 * (a.friction + b.friction);
+  pair.rolling_friction = 0.5 * (a.rolling_friction + b.rolling_friction);
+  return pair;
+}
+
+}  // namespace
+
+Materials::Materials(Options& options) {
+  for (const auto& name : options.names("material", Options::declared<Material>())) {
+    Material material;
+    material.name = name;
+    options.read("material_" + name, material);
+    if (!material.density)
+      throw UserError(
+          fmt::format("material {} has no density: give -material_{}_density in kg/m3 (positive)", name, name));
+    materials_.push_back(material);
+  }
+  const int n = count();
+  pairs_.resize(static_cast<size_t>(n) * n);
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b) pairs_[a * n + b] = mean_of(materials_[std::min(a, b)], materials_[std::max(a, b)]);
+
+  for (const auto& name : options.names("pair", Options::declared<PairOverride>())) {
+    int first = -1, second = -1;
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b < n; ++b)
+        if (materials_[a].name + "_" + materials_[b].name == name) first = a, second = b;
+    if (first < 0) {
+      std::vector<std::string> known;
+      for (int a = 0; a < n; ++a)
+        for (int b = a; b < n; ++b) known.push_back(materials_[a].name + "_" + materials_[b].name);
+      throw UserError(fmt::format("-pair_{}_...: {} is not a pair of materials; the pairs are {}", name, name,
+                                  fmt::join(known, ", ")));
+    }
+    PairOverride given;
+    options.read("pair_" + name, given);
+    for (const int k : {first * n + second, second * n + first}) {
+      if (given.restitution) pairs_[k].restitution = *given.restitution;
+      if (given.friction) pairs_[k].friction = *given.friction;
+      if (given.rolling_friction) pairs_[k].rolling_friction = *given.rolling_friction;
+    }
+  }
+}
+
+int Materials::index(const std::string& name, const std::string& origin) const {
+  std::vector<std::string> known;
+  for (int i = 0; i < count(); ++i) {
+    if (materials_[i].name == name) return i;
+    known.push_back(materials_[i].name);
+  }
+  throw UserError(fmt::format(
+      "{}: there is no material {}; materials are {}", origin, name,
+      known.empty() ? "not given (-material_<name>_density ...)" : fmt::format("{}", fmt::join(known, ", "))));
+}
+
+}  // namespace silt

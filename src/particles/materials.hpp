@@ -1,0 +1,62 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/options.hpp"
+
+namespace silt {
+
+/// The options `-material_<name>_...`.
+struct Material {
+  std::string name;
+  std::optional<double> density;
+  double young_modulus = 1e7, poisson_ratio = 0.3;
+  double restitution = 0.9, friction = 0.3, rolling_friction = 0;
+  void options(OptionGroup& option) {
+    option("density", density, "kg/m3", "density of the material; has no default", positive);
+    option("young_modulus", young_modulus, "Pa", "Young's modulus E", positive);
+    option("poisson_ratio", poisson_ratio, "-", "Poisson's ratio", between(0, 0.5));
+    option("restitution", restitution, "-", "normal coefficient of restitution e", Range{0, 1, true, false});
+    option("friction", friction, "-", "Coulomb friction coefficient mu", non_negative);
+    option("rolling_friction", rolling_friction, "-", "rolling friction coefficient mu_r", non_negative);
+  }
+};
+
+/// The options `-pair_<a>_<b>_...`: what overrides the mean of two materials.
+struct PairOverride {
+  std::optional<double> restitution, friction, rolling_friction;
+  void options(OptionGroup& option) {
+    option("restitution", restitution, "-", "normal coefficient of restitution of this pair", Range{0, 1, true, false});
+    option("friction", friction, "-", "Coulomb friction coefficient of this pair", non_negative);
+    option("rolling_friction", rolling_friction, "-", "rolling friction coefficient of this pair", non_negative);
+  }
+};
+
+/// What a contact law knows of the two materials that touch.
+struct PairProperties {
+  double effective_young;  ///< Pa, 1/E_eff = (1-s_i^2)/E_i + (1-s_j^2)/E_j (7.13)
+  double effective_shear;  ///< Pa, 1/G_eff = (2-s_i)/G_i + (2-s_j)/G_j (7.35)
+  double restitution, friction, rolling_friction;
+};
+
+/// All materials of the run and the properties of every pair of them.
+class Materials {
+ public:
+  /// Reads every `-material_<name>_...` and `-pair_<a>_<b>_...`; throws UserError for a material without a density and
+  /// for a pair of unknown materials.
+  explicit Materials(Options& options);
+
+  int count() const { return static_cast<int>(materials_.size()); }
+  const Material& operator[](int i) const { return materials_[i]; }
+  /// Index of a named material; throws UserError naming `origin` (the option that asked) and the known ones.
+  int index(const std::string& name, const std::string& origin) const;
+  /// Symmetric in a and b.
+  const PairProperties& pair(int a, int b) const { return pairs_[a * count() + b]; }
+
+ private:
+  std::vector<Material> materials_;
+  std::vector<PairProperties> pairs_;
+};
+
+}  // namespace silt

@@ -1,0 +1,176 @@
+#include "particles/migration.hpp"
+
+#include <cstring>
+
+#include "base/error.hpp"
+#include "base/petsc.hpp"
+
+namespace silt {
+
+/// The fixed part of a travelling particle; its rows of contact memory follow it.
+struct Migration::Packet {
+  std::int64_t id;
+  Motion motion;
+  Load carried;
+  FluidAction action;
+  int cell, contact_rows, wall_rows;
+};
+
+namespace {
+
+/// Adds the periods that bring the particle back into the box.
+void wrap(const Locator& locator, const Place& place, Motion& motion) {
+  for (int d = 0; d < 3; ++d)
+    if (place.wrap[d] != 0) motion.position[d] += place.wrap[d] * locator.period()[d];
+}
+
+template <class T>
+void put(std::vector<char>& buffer, const T* from, std::size_t count) {
+  const auto* bytes = reinterpret_cast<const char*>(from);
+  buffer.insert(buffer.end(), bytes, bytes + count * sizeof(T));
+}
+
+}  // namespace
+
+void Migration::exchange(std::vector<std::vector<char>>& outgoing, std::vector<char>& incoming) {
+  const int size = static_cast<int>(outgoing.size());
+  std::vector<int> sends(size), receives(size);
+  for (int rank = 0; rank < size; ++rank) sends[rank] = static_cast<int>(outgoing[rank].size());
+  MPI_Alltoall(sends.data(), 1, MPI_INT, receives.data(), 1, MPI_INT, communicator_);
+  std::size_t total = 0;
+  for (const int bytes : receives) total += bytes;
+  incoming.resize(total);
+  std::vector<MPI_Request> requests;
+  constexpr int tag = 73;
+  std::size_t at = 0;
+  for (int rank = 0; rank < size; ++rank)
+    if (receives[rank] > 0) {
+      MPI_Irecv(incoming.data() + at, receives[rank], MPI_BYTE, rank, tag, communicator_, &requests.emplace_back());
+      at += receives[rank];
+    }
+  for (int rank = 0; rank < size; ++rank)
+    if (sends[rank] > 0)
+      MPI_Isend(outgoing[rank].data(), sends[rank], MPI_BYTE, rank, tag, communicator_, &requests.emplace_back());
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  for (auto& buffer : outgoing) buffer.clear();
+}
+
+bool Migration::all_at_home(Store& store) {
+  std::vector<Place> place(store.owned);
+  bool away = false;
+  for (int p = 0; p < store.owned; ++p) {
+    place[p] = locator_.find(store.motion[p].position, store.cell[p]);
+    // A wrap moves the particle by a period, and with it the frame its neighbours' lists were built in.
+    away |= !place[p].inside() || place[p].wrap != std::array<int, 3>{0, 0, 0};
+  }
+  if (mpi_any(away)) return false;
+  for (int p = 0; p < store.owned; ++p) store.cell[p] = place[p].cell;
+  return true;
+}
+
+std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleRows& contacts, ParticleRows& walls) {
+  const int size = mpi_size();
+  store.ghosts = 0;
+  store.id.resize(store.owned);
+
+  struct Traveller {
+    std::vector<char> bytes;  ///< packet and rows
+    Place place;
+    Packet packet() const {
+      Packet packet;
+      std::memcpy(&packet, bytes.data(), sizeof packet);
+      return packet;
+    }
+  };
+  std::vector<Traveller> lost_sight;  // neither here nor surely on one other rank
+  std::vector<std::vector<char>> outgoing(size);
+  std::vector<int> staying;
+  staying.reserve(store.owned);
+  for (int p = 0; p < store.owned; ++p) {
+    const Place place = locator_.find(store.motion[p].position, store.cell[p]);
+    if (place.inside()) {
+      store.cell[p] = place.cell;
+      wrap(locator_, place, store.motion[p]);
+      staying.push_back(p);
+      continue;
+    }
+    Traveller traveller{{}, place};
+    const Packet packet{store.id[p],   store.motion[p],  carried[p],   store.action[p],
+                        store.cell[p], contacts.rows(p), walls.rows(p)};
+    put(traveller.bytes, &packet, 1);
+    put(traveller.bytes, contacts.row(contacts.start[p]),
+        static_cast<std::size_t>(packet.contact_rows) * contacts.width);
+    put(traveller.bytes, walls.row(walls.start[p]), static_cast<std::size_t>(packet.wall_rows) * walls.width);
+    if (place.state == Place::State::remote)
+      put(outgoing[place.rank], traveller.bytes.data(), traveller.bytes.size());
+    else
+      lost_sight.push_back(std::move(traveller));
+  }
+  const bool moved = mpi_any(static_cast<int>(staying.size()) < store.owned);
+  if (!moved) return {};
+
+  if (static_cast<int>(staying.size()) < store.owned) {
+    store.reorder(staying, carried);
+    contacts.reorder(staying);
+    walls.reorder(staying);
+  }
+
+  std::vector<char> incoming;
+  bool vanished = false;
+  const auto receive = [&](bool settled) {
+    exchange(outgoing, incoming);
+    for (std::size_t at = 0; at < incoming.size();) {
+      Packet packet;
+      std::memcpy(&packet, incoming.data() + at, sizeof packet);
+      const std::size_t bytes =
+          sizeof packet + sizeof(double) * (static_cast<std::size_t>(packet.contact_rows) * contacts.width +
+                                            static_cast<std::size_t>(packet.wall_rows) * walls.width);
+      const Place place = locator_.find(packet.motion.position);
+      if (place.inside()) {
+        wrap(locator_, place, packet.motion);
+        const int p = store.owned++;
+        store.reserve(store.owned);
+        store.motion[p] = packet.motion;
+        store.present[p] = store.previous[p] = Load{};
+        carried[p] = packet.carried;
+        store.id.push_back(packet.id);
+        store.cell.push_back(place.cell);
+        store.action.push_back(packet.action);
+        std::vector<double> rows((bytes - sizeof packet) / sizeof(double));
+        std::memcpy(rows.data(), incoming.data() + at + sizeof packet, bytes - sizeof packet);
+        contacts.append(rows.data(), packet.contact_rows);
+        walls.append(rows.data() + static_cast<std::size_t>(packet.contact_rows) * contacts.width, packet.wall_rows);
+      } else {
+        vanished |= settled;
+        Traveller traveller;
+        traveller.bytes.assign(incoming.begin() + at, incoming.begin() + at + bytes);
+        traveller.place = place;
+        lost_sight.push_back(std::move(traveller));
+      }
+      at += bytes;
+    }
+  };
+  receive(false);
+
+  std::vector<Gone> gone;
+  if (!mpi_any(!lost_sight.empty())) return gone;
+  std::vector<Vec3> points;
+  for (const auto& traveller : lost_sight) points.push_back(vec3(traveller.packet().motion.position));
+  const std::vector<Place> places = locator_.settle(points);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (places[k].state == Place::State::boundary) {
+      const Packet packet = lost_sight[k].packet();
+      const Place& first = lost_sight[k].place;
+      const int boundary = first.state == Place::State::boundary ? first.boundary : places[k].boundary;
+      gone.push_back({packet.id, packet.motion, packet.carried, packet.action, packet.cell, boundary});
+    } else {
+      const int rank = places[k].inside() ? mpi_rank() : places[k].rank;
+      put(outgoing[rank], lost_sight[k].bytes.data(), lost_sight[k].bytes.size());
+    }
+  }
+  receive(true);
+  if (mpi_any(vanished)) throw RunError("a particle was sent to the rank that holds it, and was not found there");
+  return gone;
+}
+
+}  // namespace silt

@@ -1,0 +1,46 @@
+#pragma once
+#include <mpi.h>
+
+#include <vector>
+
+#include "base/locator.hpp"
+#include "particles/particle_rows.hpp"
+#include "particles/store.hpp"
+
+namespace silt {
+
+/// A particle that is in no cell of the mesh any more.
+struct Gone {
+  std::int64_t id;
+  Motion motion;
+  Load carried;  ///< the contact load it had (Store::reorder)
+  FluidAction action;
+  int cell;      ///< last local cell
+  int boundary;  ///< index into Mesh::boundaries: where it passed, as far as can be told
+};
+
+/// Brings every particle to the rank whose cells contain its centre, with its fluid action and contact memories, and
+/// wraps positions into the periodic domain. Particles may cross any number of ranks at once.
+class Migration {
+ public:
+  Migration(const Mesh& mesh, MPI_Comm communicator) : locator_(mesh), communicator_(communicator) {}
+
+  /// Sets Store::cell. Particles that left the domain are taken out of the store and returned. Ghosts are forgotten.
+  /// `carried`: the load that must move along. Collective.
+  std::vector<Gone> run(Store& store, Aligned<Load>& carried, ParticleRows& contacts, ParticleRows& walls);
+
+  /// Whether all owned particles are still in local cells; updates their cells and wraps their positions only then.
+  /// Collective.
+  bool all_at_home(Store& store);
+
+  const Locator& locator() const { return locator_; }
+
+ private:
+  struct Packet;
+  void exchange(std::vector<std::vector<char>>& outgoing, std::vector<char>& incoming);
+
+  Locator locator_;
+  MPI_Comm communicator_;
+};
+
+}  // namespace silt

@@ -1,0 +1,173 @@
+#include "particles/neighbours.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace silt {
+
+CellGrid::CellGrid(const Vec3& lower, const Vec3& upper, const Vec3& origin, const Periods& periods, double reach,
+                   int particles) {
+  double extent[3];
+  for (int d = 0; d < 3; ++d) {
+    wraps_[d] = periods.length[d] > 0;
+    lower_[d] = wraps_[d] ? origin[d] : lower[d];
+    extent[d] = wraps_[d] ? periods.length[d] : std::max(upper[d] - lower[d], 0.0);
+  }
+  // Cells may be wider than the reach, never narrower; sparse domains must not cost memory.
+  const double most = 4.0 * particles + 64;
+  for (double width = reach;; width *= 1.25) {
+    double total = 1;
+    for (int d = 0; d < 3; ++d) {
+      count_[d] = static_cast<int>(std::min(std::max(1.0, std::floor(extent[d] / width)), 1e6));
+      total *= count_[d];
+    }
+    if (total <= most) break;
+  }
+  for (int d = 0; d < 3; ++d) inverse_[d] = extent[d] > 0 ? count_[d] / extent[d] : 0;
+}
+
+int CellGrid::neighbours(int cell, Run* run) const {
+  int at[3] = {cell % count_[0], cell / count_[0] % count_[1], cell / (count_[0] * count_[1])};
+  int list[3][3], n[3];
+  for (int d = 0; d < 3; ++d) {
+    n[d] = 0;
+    for (int s = -1; s <= 1; ++s) {
+      int c = at[d] + s;
+      if (wraps_[d])
+        c = (c + count_[d]) % count_[d];
+      else if (c < 0 || c >= count_[d])
+        continue;
+      int k = n[d];  // kept sorted, each once
+      while (k > 0 && list[d][k - 1] > c) --k;
+      if (k > 0 && list[d][k - 1] == c) continue;
+      for (int m = n[d]; m > k; --m) list[d][m] = list[d][m - 1];
+      list[d][k] = c;
+      ++n[d];
+    }
+  }
+  int runs = 0;
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y) {
+      const int row = (list[2][z] * count_[1] + list[1][y]) * count_[0];
+      for (int x = 0; x < n[0]; ++x) {
+        const int c = row + list[0][x];
+        if (x > 0 && run[runs - 1].last == c - 1)
+          run[runs - 1].last = c;
+        else
+          run[runs++] = {c, c};
+      }
+    }
+  return runs;
+}
+
+std::vector<int> order_along(const CellGrid& grid, const Store& store) {
+  std::vector<int> cell(store.owned), start(grid.cells() + 1, 0), order(store.owned);
+  for (int p = 0; p < store.owned; ++p) {
+    cell[p] = grid.cell_of(store.motion[p].position);
+    ++start[cell[p] + 1];
+  }
+  for (int c = 0; c < grid.cells(); ++c) start[c + 1] += start[c];
+  for (int p = 0; p < store.owned; ++p) order[start[cell[p]]++] = p;
+  return order;
+}
+
+namespace {
+
+/// Positions sorted by cell, for the search.
+struct Bins {
+  std::vector<int> start, index;
+  std::vector<double> x, y, z, r;
+  Bins(const CellGrid& grid, const Store& store, int first, int last) {
+    const int n = last - first;
+    start.assign(grid.cells() + 1, 0);
+    std::vector<int> cell(n);
+    for (int k = 0; k < n; ++k) {
+      cell[k] = grid.cell_of(store.motion[first + k].position);
+      ++start[cell[k] + 1];
+    }
+    for (int c = 0; c < grid.cells(); ++c) start[c + 1] += start[c];
+    index.resize(n), x.resize(n), y.resize(n), z.resize(n), r.resize(n);
+    std::vector<int> at(start.begin(), start.end() - 1);
+    for (int k = 0; k < n; ++k) {
+      const int s = at[cell[k]]++;
+      const Motion& motion = store.motion[first + k];
+      index[s] = first + k;
+      x[s] = motion.position[0], y[s] = motion.position[1], z[s] = motion.position[2], r[s] = motion.radius;
+    }
+  }
+};
+
+inline double image(double distance, double length, double inverse) {
+  // Adding and taking away 1.5 * 2^52 rounds to the nearest whole number without a call.
+  constexpr double shift = 6755399441055744.0;
+  return distance - length * ((distance * inverse + shift) - shift);
+}
+
+}  // namespace
+
+void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, double reach, double leave_gap,
+                const ContactMemory& memory, ContactLists& lists) {
+  lists.clear();
+  const Bins own(grid, store, 0, store.owned), ghosts(grid, store, store.owned, store.all());
+  std::vector<int> found(64);
+  std::vector<double> squares(64);
+  const auto remember = [&](int a, int b, double square) {
+    const std::int64_t id_a = store.id[a], id_b = store.id[b];
+    const int i = id_a < id_b ? a : b, j = id_a < id_b ? b : a;
+    const double touch = store.motion[a].radius + store.motion[b].radius + leave_gap;
+    const double* history = nullptr;
+    if (square < touch * touch) {
+      const int p = i < store.owned ? i : j;
+      history = memory.find(p, p == i ? store.id[j] : store.id[i]);
+      if (history) {
+        lists.add_contact(i, j, history, 1);
+        return;
+      }
+    }
+    lists.add_candidate(i, j);
+  };
+  const auto search = [&](const Bins& bins, int begin, int end, const Motion& motion, int& n) {
+    if (static_cast<int>(found.size()) < n + end - begin)
+      found.resize(2 * (n + end - begin)), squares.resize(found.size());
+    const double px = motion.position[0], py = motion.position[1], pz = motion.position[2], pr = motion.radius + reach;
+    if (periods.any)
+      for (int k = begin; k < end; ++k) {
+        const double dx = image(px - bins.x[k], periods.length[0], periods.inverse[0]);
+        const double dy = image(py - bins.y[k], periods.length[1], periods.inverse[1]);
+        const double dz = image(pz - bins.z[k], periods.length[2], periods.inverse[2]);
+        const double square = dx * dx + dy * dy + dz * dz, cut = pr + bins.r[k];
+        found[n] = k, squares[n] = square;
+        n += square < cut * cut;
+      }
+    else
+      for (int k = begin; k < end; ++k) {
+        const double dx = px - bins.x[k], dy = py - bins.y[k], dz = pz - bins.z[k];
+        const double square = dx * dx + dy * dy + dz * dz, cut = pr + bins.r[k];
+        found[n] = k, squares[n] = square;
+        n += square < cut * cut;
+      }
+  };
+  CellGrid::Run run[27];
+  for (int c = 0; c < grid.cells(); ++c) {
+    if (own.start[c] == own.start[c + 1]) continue;
+    const int runs = grid.neighbours(c, run);
+    for (int s = own.start[c]; s < own.start[c + 1]; ++s) {
+      const int p = own.index[s];  // == s: owned particles are sorted along the grid
+      int n = 0;
+      for (int r = 0; r < runs; ++r) {
+        const int begin = std::max(own.start[run[r].first], s + 1), end = own.start[run[r].last + 1];
+        if (begin < end) search(own, begin, end, store.motion[p], n);
+      }
+      for (int k = 0; k < n; ++k) remember(p, own.index[found[k]], squares[k]);
+      if (store.ghosts == 0) continue;
+      n = 0;
+      for (int r = 0; r < runs; ++r) {
+        const int begin = ghosts.start[run[r].first], end = ghosts.start[run[r].last + 1];
+        if (begin < end) search(ghosts, begin, end, store.motion[p], n);
+      }
+      for (int k = 0; k < n; ++k) remember(p, ghosts.index[found[k]], squares[k]);
+    }
+  }
+}
+
+}  // namespace silt

@@ -1,0 +1,47 @@
+#pragma once
+#include <vector>
+
+#include "base/vector.hpp"
+#include "particles/contact_lists.hpp"
+#include "particles/store.hpp"
+
+namespace silt {
+
+/// A grid of cells over the particles of a rank, at least a reach wide; wraps where the domain is periodic.
+class CellGrid {
+ public:
+  /// Covers positions [lower, upper]; in periodic directions the whole period from `origin`. `particles` bounds the
+  /// number of cells.
+  CellGrid(const Vec3& lower, const Vec3& upper, const Vec3& origin, const Periods& periods, double reach,
+           int particles);
+
+  int cells() const { return count_[0] * count_[1] * count_[2]; }
+  int cell_of(const double* x) const {
+    int c[3];
+    for (int d = 0; d < 3; ++d) {
+      c[d] = static_cast<int>((x[d] - lower_[d]) * inverse_[d]);
+      c[d] = c[d] < 0 ? 0 : c[d] >= count_[d] ? count_[d] - 1 : c[d];
+    }
+    return (c[2] * count_[1] + c[1]) * count_[0] + c[0];
+  }
+  /// Runs of consecutive cells [first, last] that together are the cell and its neighbours, each cell once.
+  struct Run {
+    int first, last;
+  };
+  int neighbours(int cell, Run* run) const;  ///< at most 27 runs
+
+ private:
+  int count_[3];
+  bool wraps_[3];
+  double lower_[3], inverse_[3];
+};
+
+/// Sorts the owned particles along the cells of a grid (locality) and returns the order for Store::reorder.
+std::vector<int> order_along(const CellGrid& grid, const Store& store);
+
+/// Fills the lists with all pairs of an owned particle and a particle of higher local index (owned or ghost) nearer
+/// than R_i + R_j + reach, touching pairs with the history they had. Requires owned particles sorted along the grid.
+void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, double reach, double leave_gap,
+                const ContactMemory& memory, ContactLists& lists);
+
+}  // namespace silt

@@ -1,0 +1,86 @@
+#pragma once
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "base/error.hpp"
+#include "base/options.hpp"
+#include "particles/contact.hpp"
+#include "particles/materials.hpp"
+#include "particles/normal/normal_load.hpp"
+
+namespace silt {
+
+/// Linear spring and dashpot, F = k x + gamma dx/dt (7.7-7.10), Tsuji et al. 1993; Schafer et al. 1996.
+///
+/// Either k and gamma are given; or the pair's restitution e with the stiffness k or the contact time t_n, from
+/// e = exp(-pi gamma / (2 m_eff w)), t_n = pi/w, w^2 = k/m_eff - (gamma/(2 m_eff))^2.
+struct Linear {
+  static constexpr const char* name = "linear";
+  static constexpr bool hertzian = false;
+  std::optional<double> stiffness, damping, contact_time;
+  bool no_attraction = false;
+
+  void options(OptionGroup& option) {
+    option("stiffness", stiffness, "N/m", "spring stiffness k; or give contact_time", positive);
+    option("contact_time", contact_time, "s", "duration t_n of a collision, in place of stiffness", positive);
+    option("damping", damping, "kg/s", "dashpot coefficient gamma; default: from the restitution", non_negative);
+    option("no_attraction", no_attraction, "clip the attractive last part of a damped collision");
+  }
+  void check() const {
+    if (stiffness.has_value() == contact_time.has_value())
+      throw UserError("-normal_type linear needs either -normal_stiffness (N/m) or -normal_contact_time (s)");
+    if (contact_time && damping)
+      throw UserError("-normal_damping goes with -normal_stiffness, not -normal_contact_time");
+  }
+
+  template <class Real>
+  struct Constants {
+    Real stiffness;           ///< N/m
+    Real stiffness_per_mass;  ///< 1/s2, k = stiffness + stiffness_per_mass m_eff
+    Real damping;             ///< kg/s
+    Real damping_ratio;       ///< gamma = damping + damping_ratio sqrt(k m_eff)
+    Real least_force;         ///< N, 0 to clip, else very negative
+  };
+  Constants<double> constants(const PairProperties& pair) const {
+    Constants<double> c{};
+    const double log_e = std::log(pair.restitution),
+                 root = std::sqrt(log_e * log_e + std::numbers::pi * std::numbers::pi);
+    if (contact_time)
+      c.stiffness_per_mass = (root / *contact_time) * (root / *contact_time);
+    else
+      c.stiffness = *stiffness;
+    if (damping)
+      c.damping = *damping;
+    else
+      c.damping_ratio = -2 * log_e / root;
+    c.least_force = no_attraction ? 0 : -infinity;
+    return c;
+  }
+
+  template <class Real>
+  struct History {};
+
+  template <class Real>
+  static SILT_INLINE NormalLoad<Real> load(const Contact<Real>& contact, const Constants<Real>& c, History<Real>&) {
+    NormalLoad<Real> load;
+    const Real zero(0.0), overlap = larger(contact.overlap, zero);
+    const Real k = c.stiffness + c.stiffness_per_mass * contact.effective_mass;
+    load.damping = c.damping + c.damping_ratio * sqrt(k * contact.effective_mass);
+    const Real force = larger(k * overlap + load.damping * contact.approach, c.least_force);
+    load.force = select(overlap > zero, force, zero);
+    load.contact_radius = sqrt(contact.effective_radius * overlap);
+    return load;
+  }
+
+  /// Duration of a collision (7.9). s
+  static double duration(const Constants<double>& c, double mass, double /*radius*/, double /*speed*/) {
+    const double k = c.stiffness + c.stiffness_per_mass * mass;
+    const double gamma = c.damping + c.damping_ratio * std::sqrt(k * mass);
+    const double square = k / mass - gamma * gamma / (4 * mass * mass);
+    // An overdamped contact never swings back; its fastest rate is then what the step must resolve.
+    return square > 0 ? std::numbers::pi / std::sqrt(square) : std::numbers::pi * mass / gamma;
+  }
+};
+
+}  // namespace silt

@@ -1,0 +1,58 @@
+#pragma once
+#include <cmath>
+#include <numbers>
+
+#include "base/options.hpp"
+#include "particles/contact.hpp"
+#include "particles/materials.hpp"
+#include "particles/normal/normal_load.hpp"
+
+namespace silt {
+
+/// Hertz spring with the damping of Tsuji et al. 1992 (7.16): F = k x^1.5 + gamma x^0.25 dx/dt, k = 4/3 E_eff
+/// sqrt(R_eff) (7.12), gamma = alpha sqrt(m_eff k). The restitution e is independent of the impact speed with alpha =
+/// -sqrt(5) ln e / sqrt(ln^2 e + pi^2), Antypov & Elliott 2011.
+struct Tsuji {
+  static constexpr const char* name = "tsuji";
+  static constexpr bool hertzian = true;
+  bool no_attraction = false;
+  void options(OptionGroup& option) {
+    option("no_attraction", no_attraction, "clip the attractive last part of a damped collision");
+  }
+
+  template <class Real>
+  struct Constants {
+    Real stiffness;    ///< Pa, 4/3 E_eff
+    Real damping;      ///< alpha
+    Real least_force;  ///< N, 0 to clip, else very negative
+  };
+  Constants<double> constants(const PairProperties& pair) const {
+    const double log_e = std::log(pair.restitution);
+    return {4.0 / 3.0 * pair.effective_young,
+            -std::sqrt(5.0) * log_e / std::sqrt(log_e * log_e + std::numbers::pi * std::numbers::pi),
+            no_attraction ? 0 : -infinity};
+  }
+
+  template <class Real>
+  struct History {};
+
+  template <class Real>
+  static SILT_INLINE NormalLoad<Real> load(const Contact<Real>& contact, const Constants<Real>& c, History<Real>&) {
+    NormalLoad<Real> load;
+    const Real zero(0.0), overlap = larger(contact.overlap, zero);
+    load.contact_radius = sqrt(contact.effective_radius * overlap);
+    const Real stiffness = c.stiffness * load.contact_radius;  // k sqrt(x)
+    load.damping = c.damping * sqrt(contact.effective_mass * stiffness);
+    const Real force = larger(stiffness * overlap + load.damping * contact.approach, c.least_force);
+    load.force = select(overlap > zero, force, zero);
+    return load;
+  }
+
+  /// Duration of an elastic collision, 2.943 x_max / v with x_max = (5 m_eff v^2 / (4 k))^(2/5). s
+  static double duration(const Constants<double>& c, double mass, double radius, double speed) {
+    const double k = c.stiffness * std::sqrt(radius);
+    return speed > 0 ? 2.943275 * std::pow(1.25 * mass * speed * speed / k, 0.4) / speed : infinity;
+  }
+};
+
+}  // namespace silt

@@ -1,0 +1,122 @@
+// Packs of doubles for the translation units that are compiled once per instruction set. Include only from sweep_*.cpp,
+// which define SILT_ISA (a namespace of their own, so that no inline function compiled for a wide instruction set can
+// stand in for the plain one at link time) and SILT_LANES.
+#pragma once
+#include <immintrin.h>
+
+// Everything here is inlined: no vector crosses a call, so its calling convention does not matter.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+
+#include "particles/real.hpp"
+
+namespace silt {
+namespace SILT_ISA {
+
+inline constexpr int lanes = SILT_LANES;
+using Quad = double __attribute__((vector_size(32)));
+using Vector = double __attribute__((vector_size(8 * SILT_LANES)));
+using Bits = long long __attribute__((vector_size(8 * SILT_LANES)));
+
+/// The outcome of a comparison, lane by lane.
+struct Mask {
+  Bits bits;
+};
+
+/// One double a lane.
+struct Pack {
+  Vector v;
+  Pack() = default;
+  SILT_INLINE Pack(Vector a) : v(a) {}
+  SILT_INLINE Pack(double a) : v(a - Vector{}) {}
+};
+
+SILT_INLINE Pack operator+(Pack a, Pack b) { return a.v + b.v; }
+SILT_INLINE Pack operator-(Pack a, Pack b) { return a.v - b.v; }
+SILT_INLINE Pack operator*(Pack a, Pack b) { return a.v * b.v; }
+SILT_INLINE Pack operator/(Pack a, Pack b) { return a.v / b.v; }
+SILT_INLINE Pack operator-(Pack a) { return -a.v; }
+SILT_INLINE Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
+SILT_INLINE Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
+SILT_INLINE Mask operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
+SILT_INLINE Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
+SILT_INLINE Mask operator&(Mask a, Mask b) { return {a.bits & b.bits}; }
+SILT_INLINE Mask operator|(Mask a, Mask b) { return {a.bits | b.bits}; }
+SILT_INLINE Pack select(Mask condition, Pack a, Pack b) { return condition.bits ? a.v : b.v; }
+
+SILT_INLINE Pack load(const double* p) { return *reinterpret_cast<const Vector*>(p); }
+SILT_INLINE Pack load_unaligned(const double* p) {
+  Pack a;
+  __builtin_memcpy(&a.v, p, sizeof a.v);
+  return a;
+}
+SILT_INLINE void store(double* p, Pack a) { *reinterpret_cast<Vector*>(p) = a.v; }
+SILT_INLINE void store_unaligned(double* p, Pack a) { __builtin_memcpy(p, &a.v, sizeof a.v); }
+
+#if SILT_LANES == 8
+SILT_INLINE Pack sqrt(Pack a) { return Vector(_mm512_sqrt_pd(__m512d(a.v))); }
+SILT_INLINE Pack nearest(Pack a) { return Vector(_mm512_roundscale_pd(__m512d(a.v), 8)); }
+/// Bit k is set where lane k of the mask is.
+SILT_INLINE unsigned lane_bits(Mask a) { return _mm512_movepi64_mask(__m512i(a.bits)); }
+#elif defined(__AVX2__)
+SILT_INLINE Pack sqrt(Pack a) { return Vector(_mm256_sqrt_pd(__m256d(a.v))); }
+SILT_INLINE Pack nearest(Pack a) { return Vector(_mm256_round_pd(__m256d(a.v), 8)); }
+SILT_INLINE unsigned lane_bits(Mask a) { return unsigned(_mm256_movemask_pd(__m256d(a.bits))); }
+#else
+SILT_INLINE Pack sqrt(Pack a) {
+  Vector r;
+  for (int k = 0; k < lanes; ++k) r[k] = __builtin_sqrt(a.v[k]);
+  return r;
+}
+SILT_INLINE Pack nearest(Pack a) {
+  // Adding and taking away 1.5 * 2^52 rounds to the nearest whole number, ties to even, as the other two do.
+  const Vector shift = 6755399441055744.0 - Vector{};
+  return (a.v + shift) - shift;
+}
+SILT_INLINE unsigned lane_bits(Mask a) {
+  unsigned bits = 0;
+  for (int k = 0; k < lanes; ++k) bits |= a.bits[k] ? 1u << k : 0u;
+  return bits;
+}
+#endif
+
+/// Reads one quad of doubles (at offset `at` doubles) from the record of each lane and turns the rows into columns.
+SILT_INLINE void load_columns(const double* base, int stride, int at, const int* index, Pack* column) {
+  const auto row = [&](int k) {
+    return *reinterpret_cast<const Quad*>(base + static_cast<long>(index[k]) * stride + at);
+  };
+#if SILT_LANES == 8
+  const auto two = [&](int k) { return __builtin_shufflevector(row(k), row(k + 4), 0, 1, 2, 3, 4, 5, 6, 7); };
+  const Vector r0 = two(0), r1 = two(1), r2 = two(2), r3 = two(3);
+  const Vector t0 = __builtin_shufflevector(r0, r1, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Vector t1 = __builtin_shufflevector(r0, r1, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Vector t2 = __builtin_shufflevector(r2, r3, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Vector t3 = __builtin_shufflevector(r2, r3, 1, 9, 3, 11, 5, 13, 7, 15);
+  column[0] = __builtin_shufflevector(t0, t2, 0, 1, 8, 9, 4, 5, 12, 13);
+  column[1] = __builtin_shufflevector(t1, t3, 0, 1, 8, 9, 4, 5, 12, 13);
+  column[2] = __builtin_shufflevector(t0, t2, 2, 3, 10, 11, 6, 7, 14, 15);
+  column[3] = __builtin_shufflevector(t1, t3, 2, 3, 10, 11, 6, 7, 14, 15);
+#else
+  const Quad r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3);
+  const Quad t0 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6), t1 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
+  const Quad t2 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6), t3 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
+  column[0] = __builtin_shufflevector(t0, t2, 0, 1, 4, 5);
+  column[1] = __builtin_shufflevector(t1, t3, 0, 1, 4, 5);
+  column[2] = __builtin_shufflevector(t0, t2, 2, 3, 6, 7);
+  column[3] = __builtin_shufflevector(t1, t3, 2, 3, 6, 7);
+#endif
+}
+
+/// Turns three columns of four contacts (and a column of zeros) into the contacts' rows.
+SILT_INLINE void rows_of(Quad x, Quad y, Quad z, Quad* row) {
+  const Quad zero = {};
+  const Quad t0 = __builtin_shufflevector(x, y, 0, 4, 2, 6), t1 = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+  const Quad t2 = __builtin_shufflevector(z, zero, 0, 4, 2, 6), t3 = __builtin_shufflevector(z, zero, 1, 5, 3, 7);
+  row[0] = __builtin_shufflevector(t0, t2, 0, 1, 4, 5);
+  row[1] = __builtin_shufflevector(t1, t3, 0, 1, 4, 5);
+  row[2] = __builtin_shufflevector(t0, t2, 2, 3, 6, 7);
+  row[3] = __builtin_shufflevector(t1, t3, 2, 3, 6, 7);
+}
+
+}  // namespace SILT_ISA
+}  // namespace silt

@@ -1,0 +1,50 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "base/options.hpp"
+
+namespace silt {
+
+/// The options `-particles_...`.
+struct ParticleOptions {
+  double step = 0, step_fraction = 0.05, rayleigh_fraction = 0.2;
+  bool step_override = false;
+  std::optional<double> speed;
+  double skin = 0, overlap_limit = 0.25;
+  std::string lost = "stop", instructions = "auto";
+  bool plane = false;
+  void options(OptionGroup& option) {
+    option("step", step, "s", "time step of the particles; 0: as long as the step fractions allow", non_negative);
+    option("step_fraction", step_fraction, "-", "longest step as a share of the shortest collision",
+           Range{0, 0.5, true, false});
+    option("rayleigh_fraction", rayleigh_fraction, "-",
+           "longest step as a share of the Rayleigh time (Hertz family of normal laws)", Range{0, 1, true, false});
+    option("step_override", step_override, "accept a particles_step that is longer than the step fractions allow");
+    option("speed", speed, "m/s",
+           "largest collision speed expected; default: the larger of the fastest start and a fall through the domain",
+           positive);
+    option("skin", skin, "m", "neighbours are listed this much beyond touching; 0: a tenth of the largest diameter",
+           non_negative);
+    option("overlap_limit", overlap_limit, "-", "an overlap beyond this share of the smaller radius stops the run",
+           Range{0, 1, true, false});
+    option("lost", lost, {"stop", "warn"}, "what to do when a particle has passed a wall");
+    option("instructions", instructions, {"auto", "plain", "avx2", "avx512"},
+           "processor instructions of the particle loops");
+    option("plane", plane, "particles move in x and y and turn about z only (always so on 2D meshes)");
+  }
+};
+
+/// The options `-settle_...`: the particles alone come to rest before the run starts.
+struct SettleOptions {
+  double time = 0, friction_factor = 1, speed = 0;
+  void options(OptionGroup& option) {
+    option("time", time, "s", "longest time the particles alone may settle before the run starts", non_negative);
+    option("friction_factor", friction_factor, "-",
+           "friction while settling, as a share of the materials' friction; 0 packs densest", fraction);
+    option("speed", speed, "m/s", "settling ends early once the root-mean-square speed is below this; 0: never",
+           non_negative);
+  }
+};
+
+}  // namespace silt

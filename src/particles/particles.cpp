@@ -1,0 +1,91 @@
+#include "particles/particles.hpp"
+
+#include <numbers>
+
+#include "base/petsc.hpp"
+#include "particles/engine.hpp"
+
+namespace silt {
+
+struct Particles::Impl : Engine {
+  using Engine::Engine;
+};
+
+Particles::Particles(const Mesh& mesh, Options& options, const Vec3& gravity)
+    : impl_(std::make_unique<Impl>(mesh, options, gravity)) {
+  SettleOptions settle;
+  options.read("settle", settle);
+  impl_->settle(settle);
+}
+Particles::~Particles() = default;
+
+int Particles::owned() const { return impl_->store.owned; }
+long long Particles::total() const { return impl_->total; }
+std::int64_t Particles::id(int i) const { return impl_->store.id[i]; }
+Map<const Vec3> Particles::position(int i) const { return vec3(std::as_const(impl_->store).motion[i].position); }
+Map<const Vec3> Particles::velocity(int i) const { return vec3(std::as_const(impl_->store).motion[i].velocity); }
+Map<const Vec3> Particles::spin(int i) const { return vec3(std::as_const(impl_->store).motion[i].spin); }
+double Particles::radius(int i) const { return impl_->store.motion[i].radius; }
+double Particles::mass(int i) const { return 1 / impl_->store.motion[i].inverse_mass; }
+double Particles::volume(int i) const {
+  const double r = radius(i);
+  return 4.0 / 3.0 * std::numbers::pi * r * r * r;
+}
+int Particles::material(int i) const { return static_cast<int>(impl_->store.motion[i].material); }
+int Particles::cell(int i) const { return impl_->store.cell[i]; }
+FluidAction& Particles::fluid_action(int i) { return impl_->store.action[i]; }
+
+void Particles::kick(int i, const Vec3& impulse) {
+  Motion& motion = impl_->store.motion[i];
+  for (int d = 0; d < 3; ++d) motion.velocity[d] += impulse[d] * motion.inverse_mass;
+  impl_->impulses.kicks += impulse;
+}
+
+void Particles::add(const std::vector<Seed>& seeds) { impl_->add(seeds); }
+ParticleStep Particles::advance(double time, double dt) { return impl_->advance(time, dt); }
+const std::vector<Departed>& Particles::departed() const { return impl_->departed; }
+double Particles::time_step() const { return impl_->limit.step; }
+std::string Particles::time_step_reason() const { return impl_->limit.reason; }
+const Materials& Particles::materials() const { return impl_->materials; }
+
+Vec3 Particles::momentum() const {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < owned(); ++i) sum += mass(i) * velocity(i);
+  return {mpi_sum(sum[0]), mpi_sum(sum[1]), mpi_sum(sum[2])};
+}
+Vec3 Particles::angular_momentum(const Vec3& origin) const {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < owned(); ++i)
+    sum += mass(i) * ((position(i) - origin).cross(Vec3(velocity(i))) + 0.4 * radius(i) * radius(i) * spin(i));
+  return {mpi_sum(sum[0]), mpi_sum(sum[1]), mpi_sum(sum[2])};
+}
+double Particles::kinetic_energy() const {
+  double sum = 0;
+  for (int i = 0; i < owned(); ++i) sum += 0.5 * mass(i) * velocity(i).squaredNorm();
+  return mpi_sum(sum);
+}
+double Particles::rotational_energy() const {
+  double sum = 0;
+  for (int i = 0; i < owned(); ++i) sum += 0.2 * mass(i) * radius(i) * radius(i) * spin(i).squaredNorm();
+  return mpi_sum(sum);
+}
+double Particles::total_mass() const {
+  double sum = 0;
+  for (int i = 0; i < owned(); ++i) sum += mass(i);
+  return mpi_sum(sum);
+}
+
+Particles::Impulses Particles::take_impulses() {
+  Impulses& mine = impl_->impulses;
+  double values[7][3];
+  const Vec3* parts[7] = {&mine.gravity, &mine.walls, &mine.drag,   &mine.fluid_force,
+                          &mine.kicks,   &mine.added, &mine.removed};
+  for (int k = 0; k < 7; ++k)
+    for (int d = 0; d < 3; ++d) values[k][d] = (*parts[k])[d];
+  MPI_Allreduce(MPI_IN_PLACE, values, 21, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  mine = {};
+  return {vec3(values[0]), vec3(values[1]), vec3(values[2]), vec3(values[3]),
+          vec3(values[4]), vec3(values[5]), vec3(values[6])};
+}
+
+}  // namespace silt

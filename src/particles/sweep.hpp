@@ -1,0 +1,124 @@
+#pragma once
+#include <cstddef>
+
+#include "particles/contact.hpp"
+
+namespace silt {
+
+/// What acts on a particle: force (N) and torque (N m), the fourth entries stay 0.
+struct alignas(64) Load {
+  double force[4];
+  double torque[4];
+};
+
+/// One of the three laws of a contact, as the sweep sees it: its place in its list of models (contact_models.hpp) and
+/// its constants for every pair of materials.
+struct LawStage {
+  int model = 0;
+  const double* constants = nullptr;  ///< [constants of the model][pairs of materials]
+  int first_history = 0;              ///< its first component among the contact's history
+};
+
+/// The laws of all contacts of a run.
+struct LawSetup {
+  LawStage normal, tangential, rolling;
+  int materials = 1;
+  double leave_gap = 0;  ///< m, a contact ends when the surfaces are further apart than this
+};
+
+/// Touching pairs: indices, and the history as one array per component. Padded to whole packs with the dummy pair.
+struct PairArrays {
+  int count = 0;
+  const int *i = nullptr, *j = nullptr;
+  double* history = nullptr;  ///< [components][stride]
+  std::size_t stride = 0;
+};
+
+/// Periods of the domain; half a period is further than any contact reaches.
+struct Periods {
+  double length[3] = {0, 0, 0};   ///< m, 0 where not periodic
+  double inverse[3] = {0, 0, 0};  ///< 1/m, 0 where not periodic
+  bool any = false;
+};
+
+struct PairSweep {
+  const Motion* motion = nullptr;
+  Load* load = nullptr;
+  PairArrays pairs;
+  LawSetup laws;
+  Periods periods;
+  double dt = 0;
+  double deepest_share = 1;  ///< overlap allowed, as a share of the smaller radius
+  int* leaving = nullptr;    ///< out: places of pairs that no longer touch, ascending
+  int leaving_count = 0;     ///< out
+  int too_deep = -1;         ///< out: place of a pair with too large an overlap, or -1
+};
+
+struct CandidateSweep {
+  const Motion* motion = nullptr;
+  int count = 0;  ///< padded as PairArrays
+  const int *i = nullptr, *j = nullptr;
+  Periods periods;
+  double enter_gap = 0;     ///< m, a contact begins when the surfaces are nearer than this
+  int* entering = nullptr;  ///< out: places of pairs that now touch, ascending
+  int entering_count = 0;   ///< out
+};
+
+/// Contacts with walls: the points the geometry gave, with history as for pairs.
+struct WallSweep {
+  const Motion* motion = nullptr;
+  Load* load = nullptr;
+  int count = 0;
+  const WallPoint* points = nullptr;
+  double* history = nullptr;
+  std::size_t stride = 0;
+  LawSetup laws;
+  double dt = 0;
+  double (*wall_force)[3] = nullptr;   ///< out: N, added to the entry of each point's boundary; force on the particles
+  double (*wall_torque)[3] = nullptr;  ///< out: N m, about the origin, on the particles
+};
+
+/// The fluid's share in a particle's motion over one substep, from FluidAction: exponential integration of
+/// m dv/dt = F + k (u - v).
+struct alignas(64) DragStep {
+  double velocity[4];      ///< m/s, u
+  double acceleration[4];  ///< m/s2, other fluid forces over the mass
+  double impulse[4];       ///< N s, drag impulse received; summed up
+  double rate;             ///< 1/s, k/m
+  double first;            ///< s, phi = (1 - exp(-rate h))/rate; h without drag
+  double second;           ///< s2, psi = (h - phi)/rate; h^2/2 without drag
+  double corrector;        ///< s, psi/h; h/2 without drag
+};
+
+/// Velocity Verlet as predictor (drift: position, and velocity with the present force, so that velocity-dependent
+/// contact forces see the velocity of their own time) and corrector (half the change of the force).
+struct Integration {
+  Motion* motion = nullptr;
+  Load *present = nullptr, *previous = nullptr;  ///< forces at the present positions; those of the step before
+  DragStep* drag = nullptr;                      ///< null: no fluid
+  const double (*origin)[4] = nullptr;           ///< m, positions at the last rebuild
+  int count = 0;
+  double dt = 0;
+  alignas(32) double gravity[4] = {0, 0, 0, 0};
+  alignas(32) double move[4] = {1, 1, 1, 0};  ///< directions that may move
+  alignas(32) double turn[4] = {1, 1, 1, 0};  ///< axes that may turn
+  bool correct = false, drift = false;
+  double largest_square = 0;  ///< out: m2, largest squared displacement since the last rebuild
+  double check = 0;           ///< out: finite when every displacement is
+};
+
+/// The loops over contacts and particles, for one instruction set.
+struct Kernels {
+  const char* name;
+  void (*pairs)(PairSweep&);
+  void (*candidates)(CandidateSweep&);
+  void (*walls)(WallSweep&);
+  void (*integrate)(Integration&);
+};
+
+extern const Kernels plain_kernels, avx2_kernels, avx512_kernels;
+
+/// The widest this processor can run, or the one named plain, avx2, avx512; throws UserError when it cannot.
+const Kernels& choose_kernels(const char* name = "auto");
+
+}  // namespace silt

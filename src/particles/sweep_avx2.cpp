@@ -1,0 +1,7 @@
+#define SILT_ISA avx2
+#define SILT_LANES 4
+#include "particles/sweep_kernels.hpp"
+
+namespace silt {
+const Kernels avx2_kernels = {"avx2", avx2::pair_sweep, avx2::candidate_sweep, avx2::wall_sweep, avx2::integrate};
+}

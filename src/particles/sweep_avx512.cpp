@@ -1,0 +1,8 @@
+#define SILT_ISA avx512
+#define SILT_LANES 8
+#include "particles/sweep_kernels.hpp"
+
+namespace silt {
+const Kernels avx512_kernels = {"avx512", avx512::pair_sweep, avx512::candidate_sweep, avx512::wall_sweep,
+                                avx512::integrate};
+}

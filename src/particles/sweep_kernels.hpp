@@ -1,0 +1,471 @@
+// The loops of sweep.hpp, compiled once per instruction set by sweep_plain.cpp, sweep_avx2.cpp, sweep_avx512.cpp.
+// Contacts run in blocks through short loops, kinematics -> normal -> tangential -> rolling law -> scatter, with
+// buffers that stay in the first-level cache: each loop fits the processor's reorder buffer, and each law is chosen
+// once a block.
+#pragma once
+#include <type_traits>
+
+#include "particles/contact_models.hpp"
+#include "particles/pack.hpp"
+#include "particles/sweep.hpp"
+
+namespace silt {
+namespace SILT_ISA {
+
+inline constexpr int block_size = 64;
+
+/// The contacts of a block, one array a quantity.
+struct alignas(64) Block {
+  double normal[3][block_size], overlap[block_size], approach[block_size];
+  double slip[3][block_size], spin[3][block_size];
+  double effective_radius[block_size], effective_mass[block_size];
+  double arm_i[block_size], arm_j[block_size];
+  double pair[block_size];  ///< number of the pair of materials
+  double normal_force[block_size], damping[block_size], contact_radius[block_size];
+  double force[3][block_size], torque[3][block_size];
+};
+
+SILT_INLINE Contact<Pack> contact_at(const Block& block, int o) {
+  Contact<Pack> contact;
+  for (int d = 0; d < 3; ++d) {
+    contact.normal[d] = load(&block.normal[d][o]);
+    contact.slip[d] = load(&block.slip[d][o]);
+    contact.spin[d] = load(&block.spin[d][o]);
+  }
+  contact.overlap = load(&block.overlap[o]);
+  contact.approach = load(&block.approach[o]);
+  contact.effective_radius = load(&block.effective_radius[o]);
+  contact.effective_mass = load(&block.effective_mass[o]);
+  return contact;
+}
+
+SILT_INLINE NormalLoad<Pack> normal_load_at(const Block& block, int o) {
+  return {load(&block.normal_force[o]), load(&block.damping[o]), load(&block.contact_radius[o])};
+}
+
+template <class Struct>
+inline constexpr int packs_in = std::is_empty_v<Struct> ? 0 : int(sizeof(Struct) / sizeof(Pack));
+
+/// The constants of the contacts at o: the same for all lanes with one material, else looked up by their pair.
+template <class Constants, bool several>
+SILT_INLINE Constants constants_at(const LawStage& stage, int materials, const Block& block, int o) {
+  Constants constants;
+  Pack* entry = reinterpret_cast<Pack*>(&constants);
+  const int pairs = materials * materials;
+  for (int c = 0; c < packs_in<Constants>; ++c) {
+    if constexpr (several) {
+      Vector value;
+      for (int k = 0; k < lanes; ++k) value[k] = stage.constants[c * pairs + int(block.pair[o + k])];
+      entry[c] = value;
+    } else {
+      entry[c] = Pack(stage.constants[c * pairs]);
+    }
+  }
+  return constants;
+}
+
+/// Where the history of the block's first contact stands.
+struct HistoryAt {
+  double* first;
+  std::size_t stride;
+};
+
+template <class History>
+SILT_INLINE History history_at(const HistoryAt& at, int o) {
+  History history;
+  Pack* entry = reinterpret_cast<Pack*>(&history);
+  for (int c = 0; c < packs_in<History>; ++c) entry[c] = load(at.first + c * at.stride + o);
+  return history;
+}
+template <class History>
+SILT_INLINE void keep_history(const History& history, const HistoryAt& at, int o) {
+  const Pack* entry = reinterpret_cast<const Pack*>(&history);
+  for (int c = 0; c < packs_in<History>; ++c) store(at.first + c * at.stride + o, entry[c]);
+}
+
+struct StageCall {
+  const LawSetup* laws;
+  const LawStage* stage;
+  HistoryAt history;
+  int count;
+  double dt;
+};
+using StageFunction = void (*)(Block&, const StageCall&);
+
+template <class Model, bool several>
+void normal_stage(Block& block, const StageCall& call) {
+  using Constants = typename Model::template Constants<Pack>;
+  using History = typename Model::template History<Pack>;
+  for (int o = 0; o < call.count; o += lanes) {
+    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
+    History history = history_at<History>(call.history, o);
+    const NormalLoad<Pack> result = Model::template load<Pack>(contact_at(block, o), constants, history);
+    keep_history(history, call.history, o);
+    store(&block.normal_force[o], result.force);
+    store(&block.damping[o], result.damping);
+    store(&block.contact_radius[o], result.contact_radius);
+  }
+}
+
+template <class Model, bool several>
+void tangential_stage(Block& block, const StageCall& call) {
+  using Constants = typename Model::template Constants<Pack>;
+  using History = typename Model::template History<Pack>;
+  const Pack dt(call.dt);
+  for (int o = 0; o < call.count; o += lanes) {
+    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
+    History history = history_at<History>(call.history, o);
+    const Contact<Pack> contact = contact_at(block, o);
+    const NormalLoad<Pack> normal = normal_load_at(block, o);
+    Pack force[3];
+    Model::template force<Pack>(contact, normal, constants, dt, history, force);
+    keep_history(history, call.history, o);
+    for (int d = 0; d < 3; ++d) store(&block.force[d][o], force[d] + normal.force * contact.normal[d]);
+  }
+}
+
+template <class Model, bool several>
+void rolling_stage(Block& block, const StageCall& call) {
+  using Constants = typename Model::template Constants<Pack>;
+  using History = typename Model::template History<Pack>;
+  const Pack dt(call.dt);
+  for (int o = 0; o < call.count; o += lanes) {
+    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
+    History history = history_at<History>(call.history, o);
+    Pack torque[3];
+    Model::template torque<Pack>(contact_at(block, o), normal_load_at(block, o), constants, dt, history, torque);
+    keep_history(history, call.history, o);
+    for (int d = 0; d < 3; ++d) store(&block.torque[d][o], torque[d]);
+  }
+}
+
+/// The stage functions of a list of models, by place in the list.
+template <bool several, class... Model>
+SILT_INLINE StageFunction normal_function(const Models<Model...>*, int model) {
+  static constexpr StageFunction functions[] = {normal_stage<Model, several>...};
+  return functions[model];
+}
+template <bool several, class... Model>
+SILT_INLINE StageFunction tangential_function(const Models<Model...>*, int model) {
+  static constexpr StageFunction functions[] = {tangential_stage<Model, several>...};
+  return functions[model];
+}
+template <bool several, class... Model>
+SILT_INLINE StageFunction rolling_function(const Models<Model...>*, int model) {
+  static constexpr StageFunction functions[] = {rolling_stage<Model, several>...};
+  return functions[model];
+}
+template <class... Model>
+SILT_INLINE bool rolls(const Models<Model...>*, int model) {
+  static constexpr bool acts[] = {Model::acts...};
+  return acts[model];
+}
+
+/// The three laws of a run, looked up once a sweep.
+struct Laws {
+  StageFunction normal, tangential, rolling;
+  bool rolls;
+  SILT_INLINE explicit Laws(const LawSetup& setup) {
+    const NormalModels* normals = nullptr;
+    const TangentialModels* tangentials = nullptr;
+    const RollingModels* rollings = nullptr;
+    const bool several = setup.materials > 1;
+    const int n = setup.normal.model, t = setup.tangential.model, r = setup.rolling.model;
+    normal = several ? normal_function<true>(normals, n) : normal_function<false>(normals, n);
+    tangential = several ? tangential_function<true>(tangentials, t) : tangential_function<false>(tangentials, t);
+    rolling = several ? rolling_function<true>(rollings, r) : rolling_function<false>(rollings, r);
+    rolls = SILT_ISA::rolls(rollings, r);
+  }
+  SILT_INLINE void run(Block& block, const LawSetup& setup, double* history, std::size_t stride, int count,
+                       double dt) const {
+    const auto call = [&](const LawStage& stage) {
+      return StageCall{&setup, &stage, {history + stage.first_history * stride, stride}, count, dt};
+    };
+    normal(block, call(setup.normal));
+    tangential(block, call(setup.tangential));
+    if (rolls) rolling(block, call(setup.rolling));
+  }
+};
+
+SILT_INLINE void nearest_image(const Periods& periods, Pack* distance) {
+  for (int d = 0; d < 3; ++d)
+    distance[d] = distance[d] - Pack(periods.length[d]) * nearest(distance[d] * Pack(periods.inverse[d]));
+}
+
+/// Kinematics of `count` pairs, once for particles, ghosts and periodic images.
+template <bool periodic, bool spins, bool several>
+SILT_INLINE void pair_kinematics(PairSweep& sweep, Block& block, int first, int count) {
+  const double* motion = reinterpret_cast<const double*>(sweep.motion);
+  constexpr int stride = sizeof(Motion) / sizeof(double);
+  const Pack half(0.5), one(1.0);
+  const Pack leave(-sweep.laws.leave_gap), deepest(sweep.deepest_share), materials(sweep.laws.materials);
+  for (int o = 0; o < count; o += lanes) {
+    const int k = first + o;
+    const int *i = sweep.pairs.i + k, *j = sweep.pairs.j + k;
+    if (k + block_size + lanes <= sweep.pairs.count)
+      for (int q = 0; q < lanes; ++q) {
+        const Motion* ahead = &sweep.motion[j[block_size + q]];
+        __builtin_prefetch(ahead);
+        __builtin_prefetch(reinterpret_cast<const char*>(ahead) + 64);
+        __builtin_prefetch(&sweep.load[j[block_size + q]], 1);
+      }
+    Pack xi[4], xj[4], vi[4], vj[4], wi[4], wj[4], distance[3];
+    load_columns(motion, stride, 0, i, xi);
+    load_columns(motion, stride, 0, j, xj);
+    for (int d = 0; d < 3; ++d) distance[d] = xi[d] - xj[d];
+    if constexpr (periodic) nearest_image(sweep.periods, distance);
+    const Pack r = sqrt(dot(distance, distance));
+    load_columns(motion, stride, 4, i, vi);
+    load_columns(motion, stride, 4, j, vj);
+    // One division serves 1/r, R_eff and m_eff.
+    const Pack radii = xi[3] + xj[3], inverse_masses = vi[3] + vj[3];
+    const Pack inverse = one / (r * radii * inverse_masses);
+    const Pack inverse_r = inverse * radii * inverse_masses;
+    Contact<Pack> contact;
+    contact.effective_radius = xi[3] * xj[3] * (inverse * r * inverse_masses);
+    contact.effective_mass = inverse * r * radii;
+    contact.overlap = radii - r;
+    const Pack give = half * contact.overlap;
+    const Pack arm_i = xi[3] - give, arm_j = xj[3] - give;
+    load_columns(motion, stride, 8, i, wi);
+    load_columns(motion, stride, 8, j, wj);
+    Pack velocity[3], rolling[3];
+    for (int d = 0; d < 3; ++d) {
+      contact.normal[d] = distance[d] * inverse_r;
+      velocity[d] = vi[d] - vj[d];
+      rolling[d] = arm_i * wi[d] + arm_j * wj[d];
+    }
+    set_relative_motion(contact, velocity, rolling);
+    for (int d = 0; d < 3; ++d) {
+      store(&block.normal[d][o], contact.normal[d]);
+      store(&block.slip[d][o], contact.slip[d]);
+      if constexpr (spins) store(&block.spin[d][o], wi[d] - wj[d]);
+    }
+    store(&block.overlap[o], contact.overlap);
+    store(&block.approach[o], contact.approach);
+    store(&block.effective_radius[o], contact.effective_radius);
+    store(&block.effective_mass[o], contact.effective_mass);
+    store(&block.arm_i[o], arm_i);
+    store(&block.arm_j[o], arm_j);
+    if constexpr (several) store(&block.pair[o], wi[3] * materials + wj[3]);
+    const unsigned apart = lane_bits(contact.overlap <= leave);
+    const unsigned deep = lane_bits(contact.overlap > deepest * smaller(xi[3], xj[3]));
+    if (apart | deep)
+      for (int q = 0; q < lanes && k + q < sweep.pairs.count; ++q) {
+        if (apart >> q & 1) sweep.leaving[sweep.leaving_count++] = k + q;
+        if (deep >> q & 1) sweep.too_deep = k + q;
+      }
+  }
+}
+
+SILT_INLINE Quad quad(const double* p) { return *reinterpret_cast<const Quad*>(p); }
+
+/// Adds the contacts' forces to both partners; one contact after the other, as a particle may occur more than once.
+template <bool rolls>
+SILT_INLINE void pair_scatter(const PairSweep& sweep, const Block& block, int first, int count) {
+  for (int o = 0; o < count; o += 4) {
+    Quad force[3], couple[3], row_f[4], row_i[4], row_j[4];
+    for (int d = 0; d < 3; ++d) force[d] = quad(&block.force[d][o]);
+    const Quad nx = quad(&block.normal[0][o]), ny = quad(&block.normal[1][o]), nz = quad(&block.normal[2][o]);
+    // Torque of the force at the contact point, -arm n from the centre of i: arm F x n.
+    couple[0] = force[1] * nz - force[2] * ny;
+    couple[1] = force[2] * nx - force[0] * nz;
+    couple[2] = force[0] * ny - force[1] * nx;
+    const Quad arm_i = quad(&block.arm_i[o]), arm_j = quad(&block.arm_j[o]);
+    rows_of(force[0], force[1], force[2], row_f);
+    if constexpr (rolls) {
+      const Quad mx = quad(&block.torque[0][o]), my = quad(&block.torque[1][o]), mz = quad(&block.torque[2][o]);
+      rows_of(arm_i * couple[0] + mx, arm_i * couple[1] + my, arm_i * couple[2] + mz, row_i);
+      rows_of(arm_j * couple[0] - mx, arm_j * couple[1] - my, arm_j * couple[2] - mz, row_j);
+    } else {
+      rows_of(arm_i * couple[0], arm_i * couple[1], arm_i * couple[2], row_i);
+      rows_of(arm_j * couple[0], arm_j * couple[1], arm_j * couple[2], row_j);
+    }
+    for (int q = 0; q < 4; ++q) {
+      Load& on_i = sweep.load[sweep.pairs.i[first + o + q]];
+      Load& on_j = sweep.load[sweep.pairs.j[first + o + q]];
+      *reinterpret_cast<Quad*>(on_i.force) += row_f[q];
+      *reinterpret_cast<Quad*>(on_i.torque) += row_i[q];
+      *reinterpret_cast<Quad*>(on_j.force) -= row_f[q];
+      *reinterpret_cast<Quad*>(on_j.torque) += row_j[q];
+    }
+  }
+}
+
+template <bool periodic, bool rolls, bool several>
+void pair_blocks(PairSweep& sweep) {
+  Block block;
+  const Laws laws(sweep.laws);
+  const PairArrays& pairs = sweep.pairs;
+  for (int first = 0; first < pairs.count; first += block_size) {
+    const int left = (pairs.count - first + 7) / 8 * 8;  // the lists are padded to 8
+    const int count = left < block_size ? left : block_size;
+    pair_kinematics<periodic, rolls, several>(sweep, block, first, count);
+    laws.run(block, sweep.laws, pairs.history + first, pairs.stride, count, sweep.dt);
+    pair_scatter<rolls>(sweep, block, first, count);
+  }
+}
+
+template <bool periodic, bool roll>
+SILT_INLINE void choose_several(PairSweep& sweep) {
+  sweep.laws.materials > 1 ? pair_blocks<periodic, roll, true>(sweep) : pair_blocks<periodic, roll, false>(sweep);
+}
+template <bool periodic>
+SILT_INLINE void choose_rolls(PairSweep& sweep) {
+  const RollingModels* models = nullptr;
+  rolls(models, sweep.laws.rolling.model) ? choose_several<periodic, true>(sweep)
+                                          : choose_several<periodic, false>(sweep);
+}
+void pair_sweep(PairSweep& sweep) {
+  sweep.leaving_count = 0;
+  sweep.too_deep = -1;
+  sweep.periods.any ? choose_rolls<true>(sweep) : choose_rolls<false>(sweep);
+}
+
+template <bool periodic>
+SILT_INLINE void candidates(CandidateSweep& sweep) {
+  const double* motion = reinterpret_cast<const double*>(sweep.motion);
+  constexpr int stride = sizeof(Motion) / sizeof(double);
+  const Pack enter(sweep.enter_gap);
+  constexpr int ahead = 32;
+  for (int k = 0; k < sweep.count; k += lanes) {
+    const int *i = sweep.i + k, *j = sweep.j + k;
+    if (k + ahead + lanes <= sweep.count)
+      for (int q = 0; q < lanes; ++q) __builtin_prefetch(&sweep.motion[j[ahead + q]]);
+    Pack xi[4], xj[4], distance[3];
+    load_columns(motion, stride, 0, i, xi);
+    load_columns(motion, stride, 0, j, xj);
+    for (int d = 0; d < 3; ++d) distance[d] = xi[d] - xj[d];
+    if constexpr (periodic) nearest_image(sweep.periods, distance);
+    const Pack reach = xi[3] + xj[3] + enter;
+    unsigned near = lane_bits(dot(distance, distance) < reach * reach);
+    if (near)
+      for (int q = 0; q < lanes && k + q < sweep.count; ++q)
+        if (near >> q & 1) sweep.entering[sweep.entering_count++] = k + q;
+  }
+}
+void candidate_sweep(CandidateSweep& sweep) {
+  sweep.entering_count = 0;
+  sweep.periods.any ? candidates<true>(sweep) : candidates<false>(sweep);
+}
+
+/// Contacts with walls: the same laws, filled one by one.
+void wall_sweep(WallSweep& sweep) {
+  Block block;
+  const Laws laws(sweep.laws);
+  for (int first = 0; first < sweep.count; first += block_size) {
+    const int left = sweep.count - first;
+    const int count = left < block_size ? left : block_size;
+    const int padded = (count + 7) / 8 * 8;
+    for (int o = 0; o < padded; ++o) {
+      const WallPoint& point = sweep.points[first + (o < count ? o : count - 1)];
+      const Motion& particle = sweep.motion[point.particle];
+      double velocity[3], rolling[3];
+      Contact<double> contact;
+      for (int d = 0; d < 3; ++d) {
+        contact.normal[d] = point.normal[d];
+        velocity[d] = particle.velocity[d] - point.velocity[d];
+        rolling[d] = point.distance * particle.spin[d];
+      }
+      set_relative_motion(contact, velocity, rolling);
+      for (int d = 0; d < 3; ++d) {
+        block.normal[d][o] = contact.normal[d];
+        block.slip[d][o] = contact.slip[d];
+        block.spin[d][o] = particle.spin[d];
+      }
+      block.overlap[o] = particle.radius - point.distance;
+      block.approach[o] = contact.approach;
+      block.effective_radius[o] = particle.radius;
+      block.effective_mass[o] = 1 / particle.inverse_mass;
+      block.arm_i[o] = point.distance;
+      block.pair[o] = particle.material * sweep.laws.materials + point.material;
+      for (int d = 0; d < 3; ++d) block.torque[d][o] = 0;
+    }
+    laws.run(block, sweep.laws, sweep.history + first, sweep.stride, padded, sweep.dt);
+    for (int o = 0; o < count; ++o) {
+      const WallPoint& point = sweep.points[first + o];
+      const double* x = sweep.motion[point.particle].position;
+      Load& load = sweep.load[point.particle];
+      const double force[3] = {block.force[0][o], block.force[1][o], block.force[2][o]};
+      double at[3];
+      for (int d = 0; d < 3; ++d) at[d] = x[d] - block.arm_i[o] * block.normal[d][o];
+      for (int d = 0; d < 3; ++d) {
+        const int e = (d + 1) % 3, f = (d + 2) % 3;
+        const double couple = force[e] * block.normal[f][o] - force[f] * block.normal[e][o];
+        load.force[d] += force[d];
+        load.torque[d] += block.arm_i[o] * couple + block.torque[d][o];
+        sweep.wall_force[point.boundary][d] += force[d];
+        sweep.wall_torque[point.boundary][d] += at[e] * force[f] - at[f] * force[e] + block.torque[d][o];
+      }
+    }
+  }
+}
+
+SILT_INLINE Quad every(double a) { return Quad{a, a, a, a}; }
+
+template <bool correct, bool drift, bool fluid>
+void integrate_all(Integration& step) {
+  const double h = step.dt;
+  const Quad move = quad(step.move), turn = quad(step.turn), gravity = quad(step.gravity);
+  double largest = 0, check = 0;
+  for (int p = 0; p < step.count; ++p) {
+    Motion& motion = step.motion[p];
+    Quad velocity = quad(motion.velocity), spin = quad(motion.spin);
+    const double inverse_mass = motion.inverse_mass;
+    const double inverse_inertia = 2.5 * inverse_mass / (motion.radius * motion.radius);
+    const Quad force = quad(step.present[p].force), torque = quad(step.present[p].torque);
+    double first = h, second = 0.5 * h * h, corrector = 0.5 * h;
+    Quad impulse{};
+    if constexpr (fluid) {
+      first = step.drag[p].first;
+      second = step.drag[p].second;
+      corrector = step.drag[p].corrector;
+      impulse = quad(step.drag[p].impulse);
+    }
+    if constexpr (correct) {
+      const Quad change = move * (force - quad(step.previous[p].force));
+      velocity += every(corrector * inverse_mass) * change;
+      spin += every(0.5 * h * inverse_inertia) * turn * (torque - quad(step.previous[p].torque));
+      if constexpr (fluid) impulse += every(corrector - 0.5 * h) * change;
+    }
+    if constexpr (drift) {
+      Quad steady = every(inverse_mass) * force + gravity;
+      Quad acceleration = steady;
+      if constexpr (fluid) {
+        steady += quad(step.drag[p].acceleration);
+        acceleration = steady + every(step.drag[p].rate) * (quad(step.drag[p].velocity) - velocity);
+        impulse += every(1 / inverse_mass) * move * (every(first) * acceleration - every(h) * steady);
+      }
+      acceleration *= move;
+      const Quad position = quad(motion.position) + (every(h) * move) * velocity + every(second) * acceleration;
+      velocity += every(first) * acceleration;
+      spin += every(h * inverse_inertia) * turn * torque;
+      *reinterpret_cast<Quad*>(motion.position) = position;
+      const Quad moved = position - quad(step.origin[p]);
+      const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
+      largest = largest > square ? largest : square;
+      check += square;
+      *reinterpret_cast<Quad*>(step.previous[p].force) = Quad{};
+      *reinterpret_cast<Quad*>(step.previous[p].torque) = Quad{};
+    }
+    *reinterpret_cast<Quad*>(motion.velocity) = velocity;
+    *reinterpret_cast<Quad*>(motion.spin) = spin;
+    if constexpr (fluid) *reinterpret_cast<Quad*>(step.drag[p].impulse) = impulse;
+  }
+  step.largest_square = largest;
+  step.check = check;
+}
+
+template <bool fluid>
+SILT_INLINE void choose_pass(Integration& step) {
+  if (step.correct && step.drift)
+    integrate_all<true, true, fluid>(step);
+  else if (step.correct)
+    integrate_all<true, false, fluid>(step);
+  else
+    integrate_all<false, true, fluid>(step);
+}
+void integrate(Integration& step) { step.drag ? choose_pass<true>(step) : choose_pass<false>(step); }
+
+}  // namespace SILT_ISA
+}  // namespace silt

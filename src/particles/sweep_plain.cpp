@@ -1,0 +1,7 @@
+#define SILT_ISA plain
+#define SILT_LANES 4
+#include "particles/sweep_kernels.hpp"
+
+namespace silt {
+const Kernels plain_kernels = {"plain", plain::pair_sweep, plain::candidate_sweep, plain::wall_sweep, plain::integrate};
+}

@@ -1,0 +1,44 @@
+#pragma once
+#include <cmath>
+#include <optional>
+
+#include "base/options.hpp"
+#include "particles/materials.hpp"
+#include "particles/tangential/tangential_load.hpp"
+
+namespace silt {
+
+/// No-slip stiffness k_t = 8 G_eff sqrt(R_eff x) with the Coulomb limit (7.34-7.36), Mindlin & Deresiewicz 1953; Tsuji
+/// et al. 1992. The dashpot follows from the same restitution as the normal one: gamma_t = alpha sqrt(2/3 m_eff k_t),
+/// that is gamma_t = 2 sqrt(G_eff/E_eff) gamma_n with the Hertz family.
+struct Mindlin {
+  static constexpr const char* name = "mindlin";
+  std::optional<double> damping_ratio;
+  void options(OptionGroup& option) {
+    option("damping_ratio", damping_ratio, "-", "gamma_t/gamma_n; default: from the restitution", non_negative);
+  }
+
+  template <class Real>
+  struct Constants {
+    Real stiffness;  ///< Pa, 8 G_eff
+    Real damping_ratio, friction;
+  };
+  Constants<double> constants(const PairProperties& pair) const {
+    return {8 * pair.effective_shear,
+            damping_ratio.value_or(2 * std::sqrt(pair.effective_shear / pair.effective_young)), pair.friction};
+  }
+
+  template <class Real>
+  struct History {
+    Real spring[3];  ///< m, zeta
+  };
+
+  template <class Real>
+  static SILT_INLINE void force(const Contact<Real>& contact, const NormalLoad<Real>& normal, const Constants<Real>& c,
+                                Real dt, History<Real>& history, Real* force) {
+    limited_spring_dashpot(contact, normal.force, c.friction, c.stiffness * normal.contact_radius,
+                           c.damping_ratio * normal.damping, dt, history.spring, force);
+  }
+};
+
+}  // namespace silt

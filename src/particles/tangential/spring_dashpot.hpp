@@ -1,0 +1,47 @@
+#pragma once
+#include <optional>
+
+#include "base/error.hpp"
+#include "base/options.hpp"
+#include "particles/materials.hpp"
+#include "particles/tangential/tangential_load.hpp"
+
+namespace silt {
+
+/// Constant spring and dashpot with the Coulomb limit (7.33), Cundall & Strack 1979.
+struct SpringDashpot {
+  static constexpr const char* name = "spring_dashpot";
+  std::optional<double> stiffness, damping;
+  double damping_ratio = 0.5;
+  void options(OptionGroup& option) {
+    option("stiffness", stiffness, "N/m", "tangential spring stiffness k_t; needed by spring_dashpot", positive);
+    option("damping", damping, "kg/s", "tangential dashpot coefficient gamma_t", non_negative);
+    option("damping_ratio", damping_ratio, "-", "gamma_t as a share of the normal damping where damping is not given",
+           non_negative);
+  }
+  void check() const {
+    if (!stiffness) throw UserError("-tangential_type spring_dashpot needs -tangential_stiffness (N/m, positive)");
+  }
+
+  template <class Real>
+  struct Constants {
+    Real stiffness, damping, damping_ratio, friction;
+  };
+  Constants<double> constants(const PairProperties& pair) const {
+    return {*stiffness, damping.value_or(0), damping ? 0 : damping_ratio, pair.friction};
+  }
+
+  template <class Real>
+  struct History {
+    Real spring[3];  ///< m, zeta
+  };
+
+  template <class Real>
+  static SILT_INLINE void force(const Contact<Real>& contact, const NormalLoad<Real>& normal, const Constants<Real>& c,
+                                Real dt, History<Real>& history, Real* force) {
+    limited_spring_dashpot(contact, normal.force, c.friction, c.stiffness, c.damping + c.damping_ratio * normal.damping,
+                           dt, history.spring, force);
+  }
+};
+
+}  // namespace silt

@@ -1,0 +1,90 @@
+#include "particles/wall_contacts.hpp"
+
+namespace silt {
+namespace {
+
+/// A point whose normal has turned by more than 45 degrees since the last step is another contact.
+constexpr double same_contact = 0.7;
+
+}  // namespace
+
+void WallContacts::resize(Aligned<double>& values, std::size_t& stride, int count) const {
+  const auto needed = static_cast<std::size_t>(count) + 8;
+  if (needed > stride) {
+    stride = (needed + needed / 4 + 63) / 64 * 64;
+    values.reserve(stride * (components_ > 0 ? components_ : 1));
+  }
+}
+
+void WallContacts::adopt() {
+  const int old_count = count(), new_count = static_cast<int>(next_.size());
+  resize(next_history_, next_stride_, new_count);
+  int first = 0;  // of the particle at hand among the old points
+  for (int k = 0; k < new_count;) {
+    const int particle = next_[k].particle;
+    int end = k;
+    while (end < new_count && next_[end].particle == particle) ++end;
+    while (first < old_count && points_[first].particle < particle) ++first;
+    int last = first;
+    while (last < old_count && points_[last].particle == particle) ++last;
+    unsigned taken = 0;
+    for (int n = k; n < end; ++n) {
+      int best = -1;
+      double closest = same_contact;
+      for (int o = first; o < last && o < first + 32; ++o) {
+        if (points_[o].boundary != next_[n].boundary || (taken >> (o - first) & 1)) continue;
+        const double cosine = dot(points_[o].normal, next_[n].normal);
+        if (cosine > closest) closest = cosine, best = o;
+      }
+      if (best >= 0) taken |= 1u << (best - first);
+      for (int c = 0; c < components_; ++c) next_history_[c * next_stride_ + n] = best >= 0 ? history(c)[best] : 0.0;
+    }
+    k = end;
+  }
+  for (int c = 0; c < components_; ++c)
+    for (int k = new_count; k < new_count + 8; ++k) next_history_[c * next_stride_ + k] = 0;
+  points_.swap(next_);
+  history_.swap(next_history_);
+  std::swap(stride_, next_stride_);
+}
+
+void WallContacts::fill(WallSweep& sweep) {
+  sweep.count = count();
+  sweep.points = points_.data();
+  sweep.history = history_.data();
+  sweep.stride = stride_;
+}
+
+void WallContacts::gather(int particles, ParticleRows& rows) const {
+  rows.clear();
+  std::vector<double> entries;
+  int k = 0;
+  for (int p = 0; p < particles; ++p) {
+    entries.clear();
+    int found = 0;
+    for (; k < count() && points_[k].particle == p; ++k, ++found) {
+      entries.push_back(points_[k].boundary);
+      entries.insert(entries.end(), points_[k].normal, points_[k].normal + 3);
+      for (int c = 0; c < components_; ++c) entries.push_back(history(c)[k]);
+    }
+    rows.append(entries.data(), found);
+  }
+}
+
+void WallContacts::restore(const ParticleRows& rows) {
+  const int particles = static_cast<int>(rows.start.size()) - 1;
+  points_.clear();
+  resize(history_, stride_, rows.start.back());
+  for (int p = 0; p < particles; ++p)
+    for (int k = rows.start[p]; k < rows.start[p + 1]; ++k) {
+      const double* row = rows.row(k);
+      WallPoint point{};
+      point.particle = p;
+      point.boundary = static_cast<int>(row[0]);
+      for (int d = 0; d < 3; ++d) point.normal[d] = row[1 + d];
+      points_.push_back(point);
+      for (int c = 0; c < components_; ++c) history(c)[k] = row[4 + c];
+    }
+}
+
+}  // namespace silt
