@@ -15,6 +15,14 @@ void add_columns(std::vector<std::string>& columns, std::initializer_list<const 
     for (char axis : {'x', 'y', 'z'}) columns.push_back(fmt::format("{}_{}", name, axis));
 }
 
+/// The largest of some numbers >= 0, or NaN when one of them is NaN: std::max would lose it.
+double largest(std::initializer_list<double> values) {
+  double result = 0;
+  for (double value : values)
+    if (!(value <= result) && !std::isnan(result)) result = value;
+  return result;
+}
+
 void add(std::vector<double>& row, const Vec3& v) { row.insert(row.end(), {v[0], v[1], v[2]}); }
 
 }  // namespace
@@ -64,11 +72,11 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeL
     // A particle that left during the step took with it what it was owed: that is in its removal.
     if (exchange && in.removed.norm() == 0)
       taken_residual =
-          std::max({(in.drag - exchange->drag_on_particles).norm(), (in.kicks - exchange->given_at_once).norm(),
-                    (in.fluid_force - exchange->delivered - exchange->buoyancy).norm()}) /
+          largest({(in.drag - exchange->drag_on_particles).norm(), (in.kicks - exchange->given_at_once).norm(),
+                   (in.fluid_force - exchange->delivered - exchange->buoyancy).norm()}) /
           scale;
   }
-  const double residual = std::max({exchange_residual, particle_residual, taken_residual});
+  const double residual = largest({exchange_residual, particle_residual, taken_residual});
   std::vector<double> row = {moment.time,       residual,       exchange_residual,
                              particle_residual, taken_residual, with_fluid_ ? moment.fluid_step.mass_residual : 0};
   if (with_fluid_) {

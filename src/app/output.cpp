@@ -29,6 +29,7 @@ double Output::next(double time) const {
 
 bool Output::due(double time) const {
   const double interval = directory_->options().interval;
+  if (last_ < 0) return true;  // the first
   if (interval <= 0) return false;
   return std::abs(time / interval - std::round(time / interval)) < 1e-9 * std::max(1.0, time / interval);
 }

@@ -20,7 +20,7 @@ class Output {
 
   /// First time of output after `time`, infinity when there is none but the end.
   double next(double time) const;
-  /// True when an output belongs to this time: one of the instants k interval.
+  /// True when an output belongs to this time: the first one, and one of the instants k interval.
   bool due(double time) const;
   /// Writes both series unless this moment's output is written already. Collective.
   void write(const Moment& moment);

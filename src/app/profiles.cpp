@@ -1,6 +1,7 @@
 #include "app/profiles.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -109,19 +110,17 @@ void Profiles::write(const OutputDirectory& directory) {
   for (auto& item : items_) {
     std::vector<double> sums(item.sums.size());
     MPI_Allreduce(item.sums.data(), sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
-    std::string text = "distance,x,y,z";
-    for (const auto& name : names) text += "," + name;
-    text += "\n";
+    std::string text = fmt::format("distance,x,y,z,{}\n", fmt::join(names, ","));
     item.means.clear();
     for (size_t b = 0; b < item.boxes.size(); ++b) {
       const Box& box = item.boxes[b];
       const double* sum = &sums[width * b];
       item.means.push_back(item.time > 0 ? 1 - sum[0] / (box.volume * item.time) : std::nan(""));
       for (int d = 0; d < 3; ++d) item.means.push_back(sum[0] > 0 ? sum[1 + d] / sum[0] : 0);
-      text += csv_number((box.centre - item.boxes[0].centre).norm());
-      for (int d = 0; d < 3; ++d) text += "," + csv_number(box.centre[d]);
-      for (size_t c = 0; c < width; ++c) text += "," + csv_number(item.means[width * b + c]);
-      text += "\n";
+      std::vector<std::string> row = {csv_number((box.centre - item.boxes[0].centre).norm())};
+      for (int d = 0; d < 3; ++d) row.push_back(csv_number(box.centre[d]));
+      for (size_t c = 0; c < width; ++c) row.push_back(csv_number(item.means[width * b + c]));
+      text += fmt::format("{}\n", fmt::join(row, ","));
     }
     write_text(directory.path("profile_" + item.name + ".csv"), text);
   }

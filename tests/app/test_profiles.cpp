@@ -1,0 +1,69 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "app/output.hpp"
+#include "app/profiles.hpp"
+#include "app/progress.hpp"
+#include "base/error.hpp"
+
+using namespace silt;
+
+TEST_CASE("a sphere's share of a box: whole, half, quarter, cap, none", "[app]") {
+  const Vec3 lower(0, 0, 0), upper(10, 10, 10), middle(5, 5, 5);
+  CHECK(share_in_box(middle, 1, lower, upper) == 1);
+  CHECK(share_in_box(Vec3(-1.5, 5, 5), 1, lower, upper) == 0);
+  CHECK(share_in_box(Vec3(5, 5, 0), 1, lower, upper) == Approx(0.5).margin(0.01));
+  CHECK(share_in_box(Vec3(0, 5, 0), 1, lower, upper) == Approx(0.25).margin(0.01));
+  CHECK(share_in_box(Vec3(0, 0, 0), 1, lower, upper) == Approx(0.125).margin(0.01));
+  // A cap of height h of the unit sphere: h^2 (3 - h)/4 of its volume.
+  for (double h : {0.3, 0.7, 1.4})
+    CHECK(share_in_box(Vec3(5, 5, h - 1), 1, lower, upper) == Approx(h * h * (3 - h) / 4).margin(0.012));
+}
+
+TEST_CASE("boxes that tile space share every sphere out completely", "[app]") {
+  const double cut[] = {0, 0.37, 0.61, 1};
+  double sum = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k)
+        sum += share_in_box(Vec3(0.4, 0.5, 0.6), 0.3, Vec3(cut[i], cut[j], cut[k]),
+                            Vec3(cut[i + 1], cut[j + 1], cut[k + 1]));
+  CHECK(sum == Approx(1).epsilon(1e-12));
+}
+
+TEST_CASE("a profile outside the mesh or without extent is refused", "[app]") {
+  MeshOptions box;
+  box.cells = {2, 2, 2};
+  const Mesh mesh(box);
+  const auto make = [&](const std::string& size, const std::string& to, bool particles) {
+    Options options;
+    options.set("profile_a_from", "0.5,0.5,0.1");
+    options.set("profile_a_to", to);
+    if (!size.empty()) options.set("profile_a_size", size);
+    Profiles(mesh, options, particles);
+  };
+  CHECK_NOTHROW(make("0.1,0.1,0.1", "0.5,0.5,0.9", true));
+  CHECK_THROWS_AS(make("", "0.5,0.5,0.9", true), UserError);
+  CHECK_THROWS_AS(make("0.1,0.1,0.1", "0.5,0.5,1.9", true), UserError);
+  CHECK_THROWS_AS(make("0.1,0.1,0.1", "0.5,0.5,0.9", false), UserError);
+}
+
+TEST_CASE("time left is written as a clock", "[app]") {
+  CHECK(clock_text(12.4) == "12 s");
+  CHECK(clock_text(187) == "3:07");
+  CHECK(clock_text(7509) == "2:05:09");
+  CHECK(clock_text(1e9) == "days");
+  CHECK(clock_text(std::nan("")) == "days");
+}
+
+TEST_CASE("the record of a run gives every option back, defaults marked", "[app]") {
+  Options options;
+  options.set("output_directory", "it's here");
+  options.set("output_interval", "0.5");
+  OutputOptions output;
+  options.read("output", output);
+  const std::string text = record_of(options);
+  CHECK(text.find("output_directory: 'it''s here'\n") != std::string::npos);
+  CHECK(text.find("output_interval: 0.5\n") != std::string::npos);
+  CHECK(text.find("output_overwrite: yes  # default\n") != std::string::npos);
+}
