@@ -18,6 +18,11 @@ class Aligned {
 
  public:
   Aligned() = default;
+  Aligned(const Aligned& other) {
+    if (other.capacity_ == 0) return;
+    reserve(other.capacity_);
+    std::memcpy(data_, other.data_, other.capacity_ * sizeof(T));
+  }
   Aligned(Aligned&& other) noexcept { swap(other); }
   Aligned& operator=(Aligned&& other) noexcept {
     swap(other);

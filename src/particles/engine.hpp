@@ -31,6 +31,23 @@ class OwnCommunicator {
   MPI_Comm communicator_;
 };
 
+/// A copy of the state of a rank's particles.
+struct Particles::Snapshot {
+  int owned = 0;
+  std::vector<Motion> motion;
+  std::vector<Load> present;
+  std::vector<std::int64_t> id;
+  std::vector<int> cell;
+  std::vector<FluidAction> action;
+  ContactMemory contacts;
+  ParticleRows walls;
+  Impulses impulses;
+  long long total, removed;
+  std::int64_t next_id;
+  Vec3 wall_total;
+  bool started;
+};
+
 /// What is behind Particles: the parts of the particle solver and the loop over the substeps.
 class Engine {
  public:
@@ -40,6 +57,9 @@ class Engine {
   ParticleStep advance(double time, double dt);
   /// Lets the particles fall without fluid until the options say they are at rest.
   void settle(const SettleOptions& options);
+
+  std::shared_ptr<const Particles::Snapshot> snapshot() const;
+  void restore(const Particles::Snapshot& snapshot);
 
   /// Momentum etc. that this rank's particles received since the last take_impulses().
   Particles::Impulses impulses;
@@ -54,6 +74,8 @@ class Engine {
   std::vector<Vec3> wall_force, wall_torque;  ///< of the last substep, on the particles, per boundary, this rank
 
  private:
+  /// advance() of particles that are held.
+  ParticleStep hold(double dt);
   void prepare_fluid(double h);
   void collect_fluid();
   void start(double time);
@@ -85,6 +107,7 @@ class Engine {
   Periods periods_;
   double skin_ = 0, largest_radius_ = 0;
   std::int64_t next_id_ = 0;
+  bool settling_ = false;
   bool started_ = false;  ///< lists and present forces are valid
   bool fluid_ = false;    ///< store.drag is in use in this advance
   bool detached_ = true;  ///< the memories are outside the lists

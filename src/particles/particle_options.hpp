@@ -13,7 +13,7 @@ struct ParticleOptions {
   std::optional<double> speed;
   double skin = 0, overlap_limit = 0.25;
   std::string lost = "stop", instructions = "auto";
-  bool plane = false;
+  bool plane = false, fixed = false;
   void options(OptionGroup& option) {
     option("step", step, "s", "time step of the particles; 0: as long as the step fractions allow", non_negative);
     option("step_fraction", step_fraction, "-", "longest step as a share of the shortest collision",
@@ -31,6 +31,10 @@ struct ParticleOptions {
     option("lost", lost, {"stop", "warn"}, "what to do when a particle has passed a wall");
     option("instructions", instructions, {"auto", "plain", "avx2", "avx512"},
            "processor instructions of the particle loops");
+    option(
+        "fixed", fixed,
+        "all particles are held where they are once settled: fluid and weight act on them, what holds them counts as "
+        "walls");
     option("plane", plane, "particles move in x and y and turn about z only (always so on 2D meshes)");
   }
 };

@@ -4,11 +4,13 @@
 
 #include "base/petsc.hpp"
 #include "particles/engine.hpp"
+#include "particles/swarm_store.hpp"
 
 namespace silt {
 
 struct Particles::Impl : Engine {
   using Engine::Engine;
+  SwarmStore swarm;
 };
 
 Particles::Particles(const Mesh& mesh, Options& options, const Vec3& gravity)
@@ -34,6 +36,10 @@ double Particles::volume(int i) const {
 int Particles::material(int i) const { return static_cast<int>(impl_->store.motion[i].material); }
 int Particles::cell(int i) const { return impl_->store.cell[i]; }
 FluidAction& Particles::fluid_action(int i) { return impl_->store.action[i]; }
+
+std::shared_ptr<const Particles::Snapshot> Particles::snapshot() const { return impl_->snapshot(); }
+void Particles::restore(const Snapshot& snapshot) { impl_->restore(snapshot); }
+DM Particles::swarm() { return impl_->swarm.refresh(impl_->mesh, impl_->store); }
 
 void Particles::kick(int i, const Vec3& impulse) {
   Motion& motion = impl_->store.motion[i];

@@ -76,6 +76,17 @@ class Particles {
   int cell(int i) const;  ///< local cell that contains the centre
   FluidAction& fluid_action(int i);
 
+  /// The whole state, to return to after a fluid step that failed. restore() must be followed by an advance(). Local /
+  /// collective.
+  struct Snapshot;
+  std::shared_ptr<const Snapshot> snapshot() const;
+  void restore(const Snapshot& snapshot);
+
+  /// The particles of this rank as a DMSWARM_BASIC with the fields id (long), position, velocity, spin (3), radius,
+  /// mass, material (int), DMSwarm_rank, fluid_velocity (3), exchange, drag_impulse (3): as of this call, for output
+  /// and projections; changes to it do not come back. Collective.
+  DM swarm();
+
   /// Adds an impulse to particle i at once (settling with the fluid).
   void kick(int i, const Vec3& impulse);
 
