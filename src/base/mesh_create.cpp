@@ -108,8 +108,14 @@ DmHandle read_gmsh(const std::string& file) {
     throw UserError(fmt::format("option -mesh_file: '{}' does not exist", file));
   // One label per physical name instead of tag numbers: boundaries are called by name.
   SILT_PETSC(PetscOptionsSetValue(nullptr, "-dm_plex_gmsh_use_regions", "1"));
+  // Only the first rank reads, and where it fails PETSc leaves the others waiting: it tries alone first.
+  PetscErrorCode code = 0;
+  if (mpi_size() > 1 && mpi_rank() == 0) {
+    DmHandle trial;
+    code = DMPlexCreateGmshFromFile(PETSC_COMM_SELF, file.c_str(), PETSC_FALSE, trial.out());
+  }
   DmHandle plex;
-  const PetscErrorCode code = DMPlexCreateGmshFromFile(PETSC_COMM_WORLD, file.c_str(), PETSC_TRUE, plex.out());
+  if (!mpi_any(code != 0)) code = DMPlexCreateGmshFromFile(PETSC_COMM_WORLD, file.c_str(), PETSC_TRUE, plex.out());
   if (mpi_any(code != 0))
     throw UserError(
         fmt::format("option -mesh_file: '{}' is not a Gmsh mesh that can be read (formats 2.2 and 4.1)", file));

@@ -52,6 +52,18 @@ bool matches(std::string_view name, std::string_view pattern) {
   return false;
 }
 
+/// The pattern with the user's own word for its `<...>`, so that `boundary_lid_velocty` is near
+/// `boundary_lid_velocity`.
+std::string with_words_of(const std::string& pattern, const std::string& name) {
+  const auto open = pattern.find('<'), close = pattern.rfind('>');
+  if (open == std::string::npos || name.compare(0, open, pattern, 0, open) != 0) return pattern;
+  const std::string property = pattern.substr(close + 1);
+  auto end = name.size();
+  for (auto left = std::count(property.begin(), property.end(), '_'); left > 0 && end != std::string::npos; --left)
+    end = end == 0 ? std::string::npos : name.rfind('_', end - 1);
+  return end == std::string::npos || end <= open ? pattern : name.substr(0, end) + property;
+}
+
 void flatten(const YAML::Node& node, const std::string& prefix, const std::string& file, Options& options) {
   const std::string origin = fmt::format("{}:{}", file, node.Mark().line + 1);
   if (node.IsMap()) {
@@ -193,7 +205,7 @@ void Options::refuse_unknown(const Options* catalogue) const {
     if (used || std::find(known.begin(), known.end(), name) != known.end() ||
         std::any_of(patterns.begin(), patterns.end(), fits))
       continue;
-    known.insert(known.end(), patterns.begin(), patterns.end());
+    for (const auto& pattern : patterns) known.push_back(with_words_of(pattern, name));
     const std::string hint = nearest(name, known);
     throw UserError(fmt::format("unknown option -{} ({}){}", name, given.origin,
                                 hint.empty() ? "; -help lists all" : fmt::format(", did you mean -{}?", hint)));
