@@ -151,3 +151,22 @@ TEST_CASE("An option of a feature that is off is let through when the catalogue 
   options.set("boundary_z_min_tipe", "pressure");
   CHECK_THROWS_AS(options.refuse_unknown(&catalogue), UserError);
 }
+
+TEST_CASE("A mistyped property of a named thing is answered with the property and the user's own name") {
+  Options catalogue, options;
+  catalogue.declare({"boundary_<name>_velocity", "text", "", "", "", "", "", false});
+  catalogue.declare({"pair_<a>_<b>_rolling_friction", "number", "", "", "", "", "", false});
+  const auto answer = [&] {
+    try {
+      options.refuse_unknown(&catalogue);
+    } catch (const UserError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  options.set("boundary_z_min_velocty", "0");
+  CHECK(answer().find("did you mean -boundary_z_min_velocity?") != std::string::npos);
+  options = Options();
+  options.set("pair_glass_wall_roling_friction", "0");
+  CHECK(answer().find("did you mean -pair_glass_wall_rolling_friction?") != std::string::npos);
+}
