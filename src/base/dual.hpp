@@ -44,6 +44,8 @@ struct Dual {
     return *this;
   }
 
+  Dual& operator*=(const Dual& b) { return *this = *this * b; }
+
   friend Dual operator+(Dual a, const Dual& b) { return a += b; }
   friend Dual operator-(Dual a, const Dual& b) { return a -= b; }
   friend Dual operator+(Dual a, const T& b) { return a += b; }

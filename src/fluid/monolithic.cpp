@@ -1,5 +1,7 @@
 #include "fluid/monolithic.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error.hpp"
@@ -22,7 +24,7 @@ MonolithicOptions read_options(Options& options) {
 void MonolithicOptions::options(OptionGroup& option) {
   option("element", element, {"equal_order", "taylor_hood"},
          "equal_order: linear velocity and pressure, stabilised; taylor_hood: quadratic velocity, linear pressure");
-  option("supg", supg, "-", "factor of the streamline term; by default 1 for equal_order, 0 for taylor_hood",
+  option("supg", supg, "-", "factor of the streamline term; by default 0.25 for equal_order, 0 for taylor_hood",
          non_negative);
   option("pspg", pspg, "-", "factor of the pressure stabilisation; by default 1 for equal_order, 0 for taylor_hood",
          non_negative);
@@ -47,7 +49,7 @@ Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& f
   FlowParameters& k = fields_.parameters;
   k.density = density_;
   k.viscosity = viscosity_;
-  k.supg = options_.supg.value_or(stabilised);
+  k.supg = options_.supg.value_or(0.25 * stabilised);
   k.pspg = options_.pspg.value_or(stabilised);
   k.grad_div = options_.grad_div.value_or(stabilised);
   k.model_a = model_a_;
@@ -150,8 +152,25 @@ void Monolithic::choose_scales() {
   residual_scale_ = std::sqrt(mpi_sum(momentum + continuity));
 }
 
+void Monolithic::check_balance() const {
+  if (!boundary_.closed()) return;
+  double flows = 0, through = 0, stored = 0;
+  for (double flow : boundary_.boundary_flow()) {
+    flows += flow;
+    through += std::abs(flow);
+  }
+  for (int i = 0; i < mesh_.owned_nodes; ++i) stored += system_.lumped_mass()[i] * fields_.alpha_rate[i];
+  stored = mpi_sum(stored);
+  if (std::abs(flows + stored) > 0.01 * (through + std::abs(stored)) && std::abs(flows) > 1e-12)
+    throw RunError(
+        fmt::format("the flow cannot be conserved: the boundaries prescribe an outflow of {:.3g} m3/s in all, the "
+                    "fluid's volume changes by {:.3g} m3/s, and no boundary has type pressure",
+                    flows, stored));
+}
+
 FluidStep Monolithic::advance(double time, double dt) {
   prepare_step(time, dt);
+  check_balance();
   choose_scales();
   const std::vector<double> before = velocity_, pressure_before = pressure_;
   std::vector<double> guess = velocity_;

@@ -56,6 +56,8 @@ class Monolithic final : public Fluid {
   const std::vector<double>& newton_norms() const { return solver_.norms(); }
 
  private:
+  /// A closed domain whose boundaries let in more than they let out has no solution.
+  void check_balance() const;
   void choose_scales();
   void find_change(const std::vector<double>& before);
   void find_pressure_gradient();

@@ -8,13 +8,13 @@
 
 namespace silt {
 
-FlowSystem::FlowSystem(const Mesh& mesh, const BoundaryConditions& boundary, int order)
+FlowSystem::FlowSystem(const Mesh& mesh, const BoundaryConditions& boundary, int order, int lanes)
     : mesh_(mesh),
       boundary_(boundary),
       space_(mesh, order),
       constraints_(space_, boundary),
       facets_(mesh, order),
-      kernel_(flow_kernel(mesh.cell, order)),
+      kernel_(flow_kernel(mesh.cell, order, lanes)),
       dimension_(mesh.dimension),
       block_(order == 1 ? mesh.dimension + 1 : 1),
       lumped_mass_(silt::lumped_mass(mesh)) {

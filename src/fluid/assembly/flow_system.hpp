@@ -33,8 +33,8 @@ struct StepFields {
 /// iterate holds the given value.
 class FlowSystem {
  public:
-  /// `order` of the velocity functions: 1 equal order, 2 Taylor-Hood. Collective.
-  FlowSystem(const Mesh& mesh, const BoundaryConditions& boundary, int order);
+  /// `order` of the velocity functions: 1 equal order, 2 Taylor-Hood; `lanes` as in flow_kernel(). Collective.
+  FlowSystem(const Mesh& mesh, const BoundaryConditions& boundary, int order, int lanes = 0);
 
   const LagrangeSpace& space() const { return space_; }
   const VelocityConstraints& constraints() const { return constraints_; }

@@ -25,7 +25,7 @@ void facet_shape(int nodes, const double* xi, std::array<double, 4>& N, double (
 
 std::vector<FacetRule> facet_rules(const Mesh& mesh) {
   const int count = facet_nodes(mesh.cell);
-  const auto rule = facet_quadrature(mesh.cell, mesh.cell == Cell::tetrahedron ? 2 : 3);
+  const auto rule = facet_quadrature(mesh.cell, mesh.cell == Cell::tetrahedron ? 4 : 3);
   std::vector<FacetRule> result;
   result.reserve(mesh.facets.size());
   for (const auto& facet : mesh.facets) {

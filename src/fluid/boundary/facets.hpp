@@ -19,10 +19,11 @@ struct FacetRule {
   int cell = 0;      ///< local cell
   int nodes = 0, points = 0;
   std::array<int, 4> node{};  ///< local nodes, ordered as the outward facet
-  std::array<FacetPoint, 4> point{};
+  std::array<FacetPoint, 6> point{};
 };
 
-/// The rules of all facets of local cells; exact for the product of two shape functions on flat facets.
+/// The rules of all facets of local cells; exact on flat facets for a shape function times a quadratic (a given inflow
+/// profile keeps its flow).
 std::vector<FacetRule> facet_rules(const Mesh& mesh);
 
 }  // namespace silt

@@ -105,7 +105,9 @@ struct VolumeAveragedNavierStokes {
       const S weight = tau_momentum * state.velocity[j] * T(mass * k.supg);
       for (int i = 0; i < dim; ++i) out.stress[i][j] += weight * strong[i];
     }
-    const S bulk = square_root(steady) * divergence * T(at.h * at.h * (0.25 * k.grad_div) / at.alpha);
+    // Grad-div: h^2/4 times the convective part of 1/tau, alpha rho |u| h/2 where convection rules; nothing where
+    // viscosity does, which needs no help and would lose accuracy.
+    const S bulk = (square_root(steady) - diffusion) * divergence * T(at.h * at.h * (0.25 * k.grad_div) / at.alpha);
     for (int i = 0; i < dim; ++i) out.stress[i][i] += bulk;
   }
 };
