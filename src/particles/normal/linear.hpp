@@ -66,7 +66,8 @@ struct Linear {
     NormalLoad<Real> load;
     const Real zero(0.0), overlap = larger(contact.overlap, zero);
     const Real k = c.stiffness + c.stiffness_per_mass * contact.effective_mass;
-    load.damping = c.damping + c.damping_ratio * sqrt(k * contact.effective_mass);
+    const Real damping = c.damping + c.damping_ratio * sqrt(k * contact.effective_mass);
+    load.damping = select(overlap > zero, damping, zero);
     const Real force = larger(k * overlap + load.damping * contact.approach, c.least_force);
     load.force = select(overlap > zero, force, zero);
     load.contact_radius = sqrt(contact.effective_radius * overlap);
