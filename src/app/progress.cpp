@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace silt {
 
@@ -25,7 +26,9 @@ std::string clock_text(double seconds) {
 Progress::Progress(Options& options) : start_(Clock::now()) {
   options.read("progress", options_);
   speaks_ = mpi_rank() == 0 && !options_.quiet;
-  terminal_ = isatty(STDOUT_FILENO) != 0;
+  // mpiexec gives its ranks a terminal of their own, wherever their output goes in the end.
+  const bool launched = std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMI_SIZE");
+  terminal_ = !launched && isatty(STDOUT_FILENO) != 0;
 }
 
 void Progress::header(const std::string& text) { line(text); }

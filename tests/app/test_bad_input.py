@@ -124,7 +124,7 @@ WRONG = [
     ("a particle file with a word for a number", {"start.csv": HEADER + "0.005,oops,0.01,0.001,bead\n"}, FROM_FILE, ["start.csv", "oops"]),
     ("a particle file with a short line", {"start.csv": HEADER + "0.005,0.005\n"}, FROM_FILE, ["start.csv"]),
     ("a particle file with an unknown material", {"start.csv": HEADER + "0.005,0.005,0.01,0.001,bean\n"}, FROM_FILE, ["bean"]),
-    ("a particle outside the mesh", {"start.csv": HEADER + "0.5,0.005,0.01,0.001,bead\n"}, FROM_FILE, ["insertion_bed"]),
+    ("a particle outside the mesh", {"start.csv": HEADER + "0.5,0.005,0.01,0.001,bead\n"}, FROM_FILE, ["start.csv:2"]),
     ("particles that overlap", {"start.csv": HEADER + "0.005,0.005,0.01,0.001,bead\n0.0052,0.005,0.01,0.001,bead\n"}, FROM_FILE, ["overlap"]),
     ("a particle in a wall", {"start.csv": HEADER + "0.0001,0.005,0.01,0.001,bead\n"}, FROM_FILE, ["overlap"]),
     ("a particle file that is not HDF5", {"start.h5": "text"}, options("-insertion_bed_type", "file", "-insertion_bed_file", "start.h5"), ["start.h5"]),
