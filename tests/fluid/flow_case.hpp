@@ -16,15 +16,17 @@ namespace silt::test {
 struct FlowCase {
   using Settings = std::vector<std::pair<std::string, std::string>>;
   Options options;
-  std::unique_ptr<Mesh> mesh;
+  std::shared_ptr<Mesh> mesh;
   std::unique_ptr<Fluid> fluid;
   double time = 0;
 
-  explicit FlowCase(const Settings& settings, const Vec3& gravity = Vec3::Zero()) {
+  /// `shared`: the mesh of another case (two meshes of the same options may be partitioned differently).
+  explicit FlowCase(const Settings& settings, const Vec3& gravity = Vec3::Zero(),
+                    std::shared_ptr<Mesh> shared = nullptr) {
     for (const auto& [name, value] : settings) options.set(name, value);
     MeshOptions mesh_options;
     options.read("mesh", mesh_options);
-    mesh = std::make_unique<Mesh>(mesh_options);
+    mesh = shared ? shared : std::make_shared<Mesh>(mesh_options);
     fluid = Fluid::create(*mesh, options, gravity);
   }
   FluidStep advance(double dt) {

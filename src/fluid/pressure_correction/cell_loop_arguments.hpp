@@ -52,15 +52,16 @@ struct ForceTerms {
 /// Terms of the momentum equation; cell arrays are null without particles (void_fraction null).
 struct MomentumTerms {
   double density, viscosity;
-  double rate;                  ///< 1/s, gamma/dt
-  double supg;                  ///< factor of the streamline stabilisation
-  const double* velocity;       ///< [nodes][3] w
-  const double* history;        ///< [nodes][3] m/s2, c1 u^n - c2 u^{n-1}
-  const double* pressure;       ///< [nodes] p^n; without particles the effective p^n + (c1 k^n phi^n - c2 ...) rho
-  const double* increment;      ///< [nodes] phi^n
-  const double* old_increment;  ///< [nodes] phi^{n-1}
-  const double* void_fraction;  ///< [nodes]
-  const double* body_force;     ///< [nodes][3] N/m3; null: 0
+  double rate;                       ///< 1/s, gamma/dt
+  double supg;                       ///< factor of the streamline stabilisation
+  const double* velocity;            ///< [nodes][3] w
+  const double* history;             ///< [nodes][3] m/s2, c1 u^n - c2 u^{n-1}
+  const double* pressure;            ///< [nodes] p^n; without particles the effective p^n + (c1 k^n phi^n - c2 ...) rho
+  const double* increment;           ///< [nodes] phi^n
+  const double* old_increment;       ///< [nodes] phi^{n-1}
+  const double* void_fraction;       ///< [nodes]
+  const double* void_fraction_rate;  ///< [nodes] 1/s
+  const double* body_force;          ///< [nodes][3] N/m3; null: 0
   const double* cell_void_fraction;
   const double* cell_pressure_share;
   const double* cell_drag;

@@ -201,10 +201,12 @@ void momentum(const CellBatches& mesh, const MomentumTerms& in, double* values, 
     gather(w, in.velocity, 3, node);
     gather(history, in.history, 3, node);
     gather(p, in.pressure, 1, node);
-    Lanes alphas[porous ? nodes : 1][1], phi[porous ? nodes : 1][1], old_phi[porous ? nodes : 1][1];
+    Lanes alphas[porous ? nodes : 1][1], rates[porous ? nodes : 1][1], phi[porous ? nodes : 1][1],
+        old_phi[porous ? nodes : 1][1];
     Lanes share = constant(1), drag = {}, factor = {}, old_factor = {}, cell_force[D] = {};
     if constexpr (porous) {
       gather(alphas, in.void_fraction, 1, node);
+      gather(rates, in.void_fraction_rate, 1, node);
       gather(phi, in.increment, 1, node);
       gather(old_phi, in.old_increment, 1, node);
       share = load(in.cell_pressure_share + at);
@@ -261,12 +263,15 @@ void momentum(const CellBatches& mesh, const MomentumTerms& in, double* values, 
       for (int d = 0; d < D; ++d) stream[d] = f[d] + cell_force[d];
       if constexpr (porous) {
         // Explicit rest of the deviatoric stress, with w: mu grad w.grad alpha - mu div w grad alpha in the volume and
-        // mu/3 alpha div w against div N; zero for alpha = 1 and div w = 0.
+        // mu/3 alpha div w against div N, div w = -(d(alpha)/dt + w.grad alpha)/alpha by continuity; zero for alpha
+        // = 1.
         Lanes gradient[D][D] = {};
         for (int a = 0; a < nodes; ++a)
           for (int i = 0; i < D; ++i)
             for (int j = 0; j < D; ++j) gradient[i][j] += G[a][i] * w[a][j];
-        for (int d = 0; d < D; ++d) dilation += gradient[d][d];
+        for (int a = 0; a < nodes; ++a) dilation -= N[a] * rates[a][0];
+        for (int d = 0; d < D; ++d) dilation -= wq[d] * grad_alpha[d];
+        dilation /= alpha;
         for (int i = 0; i < D; ++i) {
           for (int j = 0; j < D; ++j) extra[i] += mu * gradient[i][j] * grad_alpha[j];
           extra[i] -= mu * dilation * grad_alpha[i];

@@ -54,6 +54,7 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
   viscosity_ = fluid.viscosity;
   model_a_ = fluid.model == "a";
   reduced_pressure_ = !fluid.hydrostatic;
+  initial_pressure_given_ = options.given("fluid_initial_pressure");
   has_weight_ = fluid.hydrostatic && gravity.norm() > 0;
   has_body_force_ = options.given("fluid_body_force") || has_weight_;
 
@@ -117,10 +118,11 @@ PressureCorrection::Past PressureCorrection::past() const {
 
 void PressureCorrection::prepare(double time, double dt, const Past& past) {
   const int n = mesh_.nodes;
-  bool loaded = porous_;
+  bool loaded = false;
   for (int i = 0; i < n && !loaded; ++i)
-    loaded = load_.void_fraction[i] != 1 || load_.response[i] != 0 || load_.force[3 * i] != 0 ||
-             load_.force[3 * i + 1] != 0 || load_.force[3 * i + 2] != 0 || load_.void_fraction_rate[i] != 0;
+    loaded = load_.void_fraction[i] != 1 || load_.response[i] != 0 || load_.void_fraction_rate[i] != 0 ||
+             load_.force[3 * i] != 0 || load_.force[3 * i + 1] != 0 || load_.force[3 * i + 2] != 0 ||
+             void_fraction_[i] != 1 || old_void_fraction_[i] != 1 || drag_[i] != 0 || old_drag_[i] != 0;
   porous_ = mpi_any(loaded);
 
   if (past.steps == 0) {  // what the boundaries prescribe holds from the start
@@ -129,6 +131,7 @@ void PressureCorrection::prepare(double time, double dt, const Past& past) {
     old_velocity_ = velocity_;
   }
   boundaries_.evaluate(time + dt, load_.void_fraction.data());
+  bdf_dt_ = dt;
   bdf_ = fluid_.order == 1 || past.steps == 0 ? Bdf::first(dt) : Bdf::second(dt, past.dt);
   for (int i = 0; i < 3 * n; ++i) {
     convecting_[i] = bdf_.e1 * velocity_[i] - bdf_.e2 * old_velocity_[i];
@@ -205,7 +208,7 @@ void PressureCorrection::set_momentum_terms() {
   mobility(before.old_rate, old_void_fraction_, old_drag_, bdf_.c2, old_increment_factor_);
   terms_.pressure = pressure_.data(), terms_.increment = increment_.data(),
   terms_.old_increment = old_increment_.data();
-  terms_.void_fraction = void_fraction;
+  terms_.void_fraction = void_fraction, terms_.void_fraction_rate = load_.void_fraction_rate.data();
   terms_.cell_void_fraction = cell_.void_fraction, terms_.cell_pressure_share = cell_.pressure_share;
   terms_.cell_drag = cell_.drag;
   terms_.increment_factor = increment_factor_, terms_.old_increment_factor = old_increment_factor_;
@@ -300,81 +303,119 @@ void PressureCorrection::check_balance(double flows, double volume_rate) const {
 }
 
 FluidStep PressureCorrection::advance(double time, double dt) {
-  const int n = mesh_.nodes;
   const Past before = past();
   FluidStep step;
   try {
     prepare(time, dt, before);
-    set_momentum_terms();
-    assemble_momentum();
-    solution_ = convecting_;
-    step.velocity_iterations = velocity_solver_.solve(momentum_, momentum_.diagonal(), boundaries_, right_, solution_,
-                                                      scheme_.velocity_tolerance);
-
-    std::vector<double> divergence;
-    std::vector<double> right = continuity(solution_, divergence);
-    const std::vector<double> full_right = right;
-    double flows = 0;
-    for (double flow : boundaries_.boundary_flow()) flows += flow;
-    const double volume_rate = mesh_.dot(mass_.data(), load_.void_fraction_rate.data(), 1);
-    if (boundaries_.closed()) {
-      // Quadrature of an inflow that balances exactly leaves a small rest, spread evenly.
-      check_balance(flows, volume_rate);
-      const double rest = (flows + volume_rate) / mesh_.volume;
-      for (int i = 0; i < n; ++i) right[i] += mass_[i] * rest;
+    std::vector<double> phi, divergence;
+    const bool unknown = before.steps == 0 && !initial_pressure_given_;
+    const std::vector<double> start = unknown ? pressure_ : std::vector<double>();
+    try {
+      if (unknown) set_static_pressure(before);
+      solve(before, step, phi, divergence);
+    } catch (const SolveFailure&) {
+      if (unknown) pressure_ = start;
+      throw;
     }
-    assemble_pressure(before);
-
-    const auto& outlet = boundaries_.pressure_boundary();
-    std::vector<double> phi(n);
-    const double growth = before.dt > 0 ? dt / before.dt : 1;
-    for (int i = 0; i < n; ++i)
-      phi[i] = outlet[i] >= 0 ? boundaries_.pressure()[i] - pressure_[i]
-                              : growth * ((1 + growth) * increment_[i] - growth * old_increment_[i]);
-    step.pressure_iterations = pressure_solver_.solve(right, phi);
-    if (mpi_any(!finite(phi) || !finite(solution_))) throw SolveFailure("the flow field became non-finite");
-
-    // Done: nothing can fail from here on.
-    const std::vector<double> rows = pressure_solver_.fixed_rows(phi);
-    for (int i = 0; i < n; ++i) outflow_[i] = outlet[i] >= 0 ? full_right[i] - rows[i] : 0;
-    const std::vector<double> ones(n, 1.0);
-    double inflow = 0;
-    for (double flow : boundaries_.boundary_flow()) inflow += std::max(0.0, -flow);
-    step.mass_residual =
-        -(flows + mesh_.dot(ones.data(), outflow_.data(), 1) + volume_rate) / (inflow > 0 ? inflow : 1);
-
-    std::vector<double> gradient(3 * n, 0.0);
-    loops_.effective_gradient(terms_, gradient.data());
-    mesh_.sum_shared(gradient.data(), 3);
-    for (int i = 0; i < 3 * n; ++i) {
-      pressure_gradient_[i] = gradient[i] / mass_[i / 3];
-      velocity_change_[i] = solution_[i] - velocity_[i];
-    }
-    std::swap(old_increment_, increment_);
-    std::swap(increment_, phi);
-    for (int i = 0; i < n; ++i) {
-      const double rotation = scheme_.rotational ? viscosity_ * divergence[i] : 0;
-      const double share = model_a_ ? load_.void_fraction[i] : 1.0;
-      pressure_[i] = outlet[i] >= 0 ? boundaries_.pressure()[i] : pressure_[i] + increment_[i] - rotation / share;
-    }
-    std::swap(old_velocity_, velocity_);
-    velocity_ = solution_;
-    std::swap(old_void_fraction_, void_fraction_);
-    void_fraction_ = load_.void_fraction;
-    std::swap(old_drag_, drag_);
-    drag_ = drag_now_;
-    for (int i = 0; i < n; ++i) {
-      past_[4 * i] = std::min(before.steps + 1, 2);
-      past_[4 * i + 1] = dt, past_[4 * i + 2] = bdf_.c0, past_[4 * i + 3] = before.rate;
-    }
-    renew_ = false;
+    accept(before, dt, phi, divergence);
   } catch (const SolveFailure&) {
     renew_ = true;
     throw;
   }
+  step.mass_residual = mass_residual_;
   const FluidStep balance = report(dt);
   step.courant = balance.courant, step.momentum = balance.momentum, step.boundary_force = balance.boundary_force;
   return step;
+}
+
+void PressureCorrection::set_static_pressure(const Past& before) {
+  set_momentum_terms();
+  if (!porous_ && !has_body_force_) return;
+  set_cell_forces(has_body_force_ ? body_force_.data() : nullptr);
+  assemble_pressure(before);
+  std::vector<double> coefficient(loops_.padded_cells()), sums(3 * mesh_.nodes, 0.0), right(mesh_.nodes);
+  for (std::size_t k = 0; k < coefficient.size(); ++k)
+    coefficient[k] = cell_.void_fraction[k] * cell_.mobility[k] + cell_.stabilisation[k];
+  const std::vector<double> zero(3 * mesh_.nodes, 0.0);
+  loops_.continuity({zero.data(),
+                     zero.data(),
+                     zero.data(),
+                     coefficient.data(),
+                     {cell_.balance[0], cell_.balance[1], cell_.balance[2]}},
+                    sums.data());
+  mesh_.sum_shared(sums.data(), 2);
+  for (int i = 0; i < mesh_.nodes; ++i) {
+    right[i] = sums[2 * i];
+    pressure_[i] = boundaries_.pressure()[i];
+  }
+  pressure_solver_.solve(right, pressure_);
+}
+
+void PressureCorrection::solve(const Past& before, FluidStep& step, std::vector<double>& phi,
+                               std::vector<double>& divergence) {
+  const int n = mesh_.nodes;
+  set_momentum_terms();
+  assemble_momentum();
+  solution_ = convecting_;
+  step.velocity_iterations += velocity_solver_.solve(momentum_, momentum_.diagonal(), boundaries_, right_, solution_,
+                                                     scheme_.velocity_tolerance);
+
+  std::vector<double> right = continuity(solution_, divergence);
+  const std::vector<double> full_right = right;
+  double flows = 0, inflow = 0;
+  for (double flow : boundaries_.boundary_flow()) flows += flow, inflow += std::max(0.0, -flow);
+  const double volume_rate = mesh_.dot(mass_.data(), load_.void_fraction_rate.data(), 1);
+  if (boundaries_.closed()) {
+    // Quadrature of an inflow that balances exactly leaves a small rest, spread evenly.
+    check_balance(flows, volume_rate);
+    const double rest = (flows + volume_rate) / mesh_.volume;
+    for (int i = 0; i < n; ++i) right[i] += mass_[i] * rest;
+  }
+  assemble_pressure(before);
+
+  const auto& outlet = boundaries_.pressure_boundary();
+  const double growth = before.dt > 0 ? bdf_dt_ / before.dt : 1;
+  phi.resize(n);
+  for (int i = 0; i < n; ++i)
+    phi[i] = outlet[i] >= 0 ? boundaries_.pressure()[i] - pressure_[i]
+                            : growth * ((1 + growth) * increment_[i] - growth * old_increment_[i]);
+  step.pressure_iterations += pressure_solver_.solve(right, phi);
+  if (mpi_any(!finite(phi) || !finite(solution_))) throw SolveFailure("the flow field became non-finite");
+
+  const std::vector<double> rows = pressure_solver_.fixed_rows(phi), ones(n, 1.0);
+  for (int i = 0; i < n; ++i) outflow_[i] = outlet[i] >= 0 ? full_right[i] - rows[i] : 0;
+  mass_residual_ = -(flows + mesh_.dot(ones.data(), outflow_.data(), 1) + volume_rate) / (inflow > 0 ? inflow : 1);
+}
+
+void PressureCorrection::accept(const Past& before, double dt, std::vector<double>& phi,
+                                const std::vector<double>& divergence) {
+  const int n = mesh_.nodes;
+  const auto& outlet = boundaries_.pressure_boundary();
+  std::vector<double> gradient(3 * n, 0.0);
+  loops_.effective_gradient(terms_, gradient.data());
+  mesh_.sum_shared(gradient.data(), 3);
+  for (int i = 0; i < 3 * n; ++i) {
+    pressure_gradient_[i] = gradient[i] / mass_[i / 3];
+    velocity_change_[i] = solution_[i] - velocity_[i];
+  }
+  std::swap(old_increment_, increment_);
+  std::swap(increment_, phi);
+  for (int i = 0; i < n; ++i) {
+    const double rotation = scheme_.rotational ? viscosity_ * divergence[i] : 0;
+    const double share = model_a_ ? load_.void_fraction[i] : 1.0;
+    pressure_[i] = outlet[i] >= 0 ? boundaries_.pressure()[i] : pressure_[i] + increment_[i] - rotation / share;
+  }
+  std::swap(old_velocity_, velocity_);
+  velocity_ = solution_;
+  std::swap(old_void_fraction_, void_fraction_);
+  void_fraction_ = load_.void_fraction;
+  std::swap(old_drag_, drag_);
+  drag_ = drag_now_;
+  for (int i = 0; i < n; ++i) {
+    past_[4 * i] = std::min(before.steps + 1, 2);
+    past_[4 * i + 1] = dt, past_[4 * i + 2] = bdf_.c0, past_[4 * i + 3] = before.rate;
+  }
+  renew_ = false;
 }
 
 double PressureCorrection::courant_rate() const {

@@ -59,6 +59,10 @@ class PressureCorrection : public Fluid {
   void add_backflow();
   std::vector<double> continuity(const std::vector<double>& u, std::vector<double>& divergence);
   void assemble_pressure(const Past& past);
+  /// The pressure that balances the forces on the fluid at rest, for a start of which no pressure is known.
+  void set_static_pressure(const Past& before);
+  void solve(const Past& before, FluidStep& step, std::vector<double>& phi, std::vector<double>& divergence);
+  void accept(const Past& before, double dt, std::vector<double>& phi, const std::vector<double>& divergence);
   void check_balance(double flows, double volume_rate) const;
   FluidStep report(double dt) const;
   Vec3 boundary_reactions(std::vector<BoundaryFlow>& flows) const;
@@ -76,7 +80,7 @@ class PressureCorrection : public Fluid {
   PressureSolver pressure_solver_;
   std::vector<double> mass_;       ///< [nodes] m3, lumped
   std::vector<double> node_size_;  ///< [nodes] m, shortest edge of the local cells around
-  bool has_body_force_ = false, has_weight_ = false;
+  bool has_body_force_ = false, has_weight_ = false, initial_pressure_given_ = false;
 
   // The state: fields of step n, n-1 and of the corrections in between.
   std::vector<double> velocity_, old_velocity_, pressure_, increment_, old_increment_;
@@ -87,6 +91,7 @@ class PressureCorrection : public Fluid {
   // Of the present step.
   bool porous_ = false, renew_ = true;
   Bdf bdf_{};
+  double bdf_dt_ = 0, mass_residual_ = 0;
   double matrix_rate_ = 0;  ///< gamma/dt of the assembled pressure matrix
   int matrix_age_ = 0;
   std::vector<double> convecting_, history_, body_force_, weight_, load_per_drag_, drag_now_, right_, solution_, flux_,

@@ -38,7 +38,10 @@ Vec3 PressureCorrection::boundary_reactions(std::vector<BoundaryFlow>& flows) co
       double* sum = at(rule.boundary);
       sum[1] += p * point.area.norm();
       vec3(sum + 2) += p * point.area;
-      vec3(sum + 5) -= density_ * alpha * u.dot(point.area) * u;
+      // What the backflow term takes from fluid that comes in is not carried in.
+      const double out = u.dot(point.area);
+      const bool taken = out < 0 && boundaries_.type(rule.boundary) == BoundaryType::pressure;
+      vec3(sum + 5) -= density_ * alpha * out * (taken ? 1 - fluid_.backflow : 1.0) * u;
     }
   for (int i = 0; i < mesh_.owned_nodes; ++i)
     if (boundaries_.pressure_boundary()[i] >= 0) at(boundaries_.pressure_boundary()[i])[0] += outflow_[i];

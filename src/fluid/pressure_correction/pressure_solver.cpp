@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <cstring>
 
 #include "base/error.hpp"
@@ -18,9 +19,17 @@ PressureSolver::PressureSolver(const NodalGraph& graph, const std::vector<int>& 
       if (fixed_[i] || fixed_[graph.column[k]]) aside_.push_back({k, i, graph.column[k]});
 
   petsc_ = matrix_.create_petsc();
-  SILT_PETSC(MatSetOption(petsc_, MAT_SYMMETRIC, PETSC_TRUE));
-  SILT_PETSC(MatSetOption(petsc_, MAT_SPD, singular ? PETSC_FALSE : PETSC_TRUE));
   SILT_PETSC(MatCreateVecs(petsc_, solution_.out(), right_.out()));
+  create_solver();
+  if (singular && !direct_) {
+    MatNullSpace constants;
+    SILT_PETSC(MatNullSpaceCreate(PETSC_COMM_WORLD, PETSC_TRUE, 0, nullptr, &constants));
+    SILT_PETSC(MatSetNullSpace(petsc_, constants));
+    SILT_PETSC(MatNullSpaceDestroy(&constants));
+  }
+}
+
+void PressureSolver::create_solver() {
   SILT_PETSC(KSPCreate(PETSC_COMM_WORLD, ksp_.out()));
   SILT_PETSC(KSPSetOptionsPrefix(ksp_, "fluid_pressure_"));
   SILT_PETSC(KSPSetType(ksp_, KSPCG));
@@ -35,12 +44,6 @@ PressureSolver::PressureSolver(const NodalGraph& graph, const std::vector<int>& 
   direct_ = same;
   SILT_PETSC(KSPSetInitialGuessNonzero(ksp_, direct_ ? PETSC_FALSE : PETSC_TRUE));
   if (direct_) SILT_PETSC(KSPSetNormType(ksp_, KSP_NORM_NONE));
-  if (singular && !direct_) {
-    MatNullSpace constants;
-    SILT_PETSC(MatNullSpaceCreate(PETSC_COMM_WORLD, PETSC_TRUE, 0, nullptr, &constants));
-    SILT_PETSC(MatSetNullSpace(petsc_, constants));
-    SILT_PETSC(MatNullSpaceDestroy(&constants));
-  }
 }
 
 void PressureSolver::update(bool renew) {
@@ -53,7 +56,14 @@ void PressureSolver::update(bool renew) {
   if (singular_ && direct_ && graph_.mesh.owned_nodes > 0 && graph_.mesh.first_node == 0)
     matrix_.values[graph_.diagonal[0]] *= 2;
   matrix_.fill_petsc(petsc_);
-  if (renew) reference_iterations_ = -1;
+  // Every assembly but the first forgets these.
+  SILT_PETSC(MatSetOption(petsc_, MAT_SYMMETRIC, PETSC_TRUE));
+  if (!singular_) SILT_PETSC(MatSetOption(petsc_, MAT_SPD, PETSC_TRUE));
+  if (!renew) return;
+  // A new object, not only a new set-up: the random vectors of its eigenvalue estimates start over, so that a run goes
+  // on from a checkpoint with the same bits as one that is restarted from it.
+  create_solver();
+  reference_iterations_ = -1;
 }
 
 void PressureSolver::lift(const std::vector<double>& phi, std::vector<double>& right) const {
@@ -76,6 +86,8 @@ std::vector<double> PressureSolver::fixed_rows(const std::vector<double>& phi) c
 bool PressureSolver::attempt(int& iterations) {
   SILT_PETSC(KSPSetOperators(ksp_, petsc_, petsc_));
   SILT_PETSC(KSPSetReusePreconditioner(ksp_, !direct_ && reference_iterations_ >= 0 ? PETSC_TRUE : PETSC_FALSE));
+  // GAMG estimates eigenvalues from drand48, whose state would otherwise make a set-up depend on those before.
+  if (reference_iterations_ < 0) srand48(1);
   SILT_PETSC(KSPSolve(ksp_, right_, solution_));
   KSPConvergedReason reason;
   PetscInt count;

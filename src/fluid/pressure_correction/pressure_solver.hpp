@@ -29,6 +29,7 @@ class PressureSolver {
   std::vector<double> fixed_rows(const std::vector<double>& phi) const;
 
  private:
+  void create_solver();
   bool attempt(int& iterations);
   void lift(const std::vector<double>& phi, std::vector<double>& right) const;
 
