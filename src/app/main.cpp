@@ -1,5 +1,3 @@
-#include <fmt/format.h>
+#include "app/program.hpp"
 
-#include "app/version.hpp"
-
-int main() { fmt::print("silt {}\n", silt::version); }
+int main(int argc, char** argv) { return silt::run_program({argv + 1, argv + argc}); }

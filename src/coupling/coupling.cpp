@@ -191,15 +191,14 @@ void Coupling::before_fluid(double dt) {
   filter_->apply(nodal_.data(), load_components);
 
   ParticleLoad& load = fluid_.load();
-  std::vector<double>& solids = at_particles_;
-  solids.resize(mesh_.nodes);
+  solids_.resize(mesh_.nodes);
   for (int i = 0; i < mesh_.nodes; ++i) {
     const double* f = &nodal_[load_components * static_cast<std::size_t>(i)];
-    solids[i] = f[0];
+    solids_[i] = f[0];
     load.response[i] = mass_[i] * f[1] / dt;
     for (int d = 0; d < 3; ++d) load.force[3 * i + d] = -mass_[i] * f[2 + d] / dt;
   }
-  void_fraction_.advance(solids, dt, options_.void_fraction_minimum, load.void_fraction, load.void_fraction_rate);
+  void_fraction_.advance(solids_, dt, options_.void_fraction_minimum, load.void_fraction, load.void_fraction_rate);
   for (int i = 0; i < mesh_.owned_nodes; ++i) ledger_.drag_on_fluid += depth_ * dt * vec3(&load.force[3 * i]);
 }
 
@@ -217,7 +216,8 @@ void Coupling::after_fluid(double dt) {
     }
   }
   for (int i = 0; i < mesh_.owned_nodes; ++i) {
-    const double solids = mass_[i] * (1 - load.void_fraction[i]) * depth_;
+    // Not 1 - alpha, whose round-off is that of 1: a lone particle must balance too.
+    const double solids = mass_[i] * solids_[i] * depth_;
     ledger_.deposited_volume += solids;
     for (int d = 0; d < 3; ++d) {
       ledger_.response_on_fluid[d] -= depth_ * dt * load.response[i] * change[3 * i + d];

@@ -96,6 +96,7 @@ class Coupling {
   ExchangeLedger ledger_;
   double exchanged_ = 0;  ///< N s, sum of the magnitudes exchanged in this step: the scale of the residual
   std::vector<double> nodal_, at_particles_;
+  std::vector<double> solids_;  ///< [nodes] 1 - alpha of this step
   std::vector<Response> responses_;
 };
 

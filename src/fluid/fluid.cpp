@@ -1,5 +1,7 @@
 #include "fluid/fluid.hpp"
 
+#include <fmt/format.h>
+
 #include "base/error.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/monolithic.hpp"
@@ -13,8 +15,12 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
   if (fluid.type == "none") return nullptr;
   for (const char* name : {"fluid_density", "fluid_viscosity"})
     if (!options.given(name)) throw UserError(std::string("-") + name + " is missing: the fluid needs it");
-  if (fluid.scheme == "pressure_correction") return make_pressure_correction(mesh, options, fluid, gravity);
-  return make_monolithic(mesh, options, fluid, gravity);
+  auto made = fluid.scheme == "pressure_correction" ? make_pressure_correction(mesh, options, fluid, gravity)
+                                                    : make_monolithic(mesh, options, fluid, gravity);
+  made->description_ = fmt::format("{}, {} kg/m3, {} Pa s; {}, BDF{}, model {}", fluid.type, fluid.density,
+                                   fluid.viscosity, fluid.scheme, fluid.order, fluid.model);
+  if (made->unknowns_ == 0) made->unknowns_ = (mesh.dimension + 1) * mesh.total_nodes;
+  return made;
 }
 
 }  // namespace silt

@@ -56,6 +56,11 @@ class Fluid {
   /// (`-fluid_hydrostatic yes`): the pressure gradient holds the static head and the buoyancy is part of -V_p grad p.
   bool reduced_pressure() const { return reduced_pressure_; }
 
+  /// One line for the header of the run.
+  const std::string& description() const { return description_; }
+  /// Number of unknowns over all ranks.
+  long long unknowns() const { return unknowns_; }
+
   /// Advances from time to time + dt with the present load. On SolveFailure the state is as before. Collective.
   virtual FluidStep advance(double time, double dt) = 0;
   /// Largest |u| dt/h of the present state for a unit step (1/s). Collective.
@@ -91,6 +96,8 @@ class Fluid {
   double density_ = 0, viscosity_ = 0;
   bool model_a_ = true;
   bool reduced_pressure_ = true;
+  std::string description_;
+  long long unknowns_ = 0;
 };
 
 }  // namespace silt

@@ -4,21 +4,29 @@
 
 #include "base/petsc.hpp"
 #include "particles/engine.hpp"
+#include "particles/insertion/insertion_options.hpp"
 #include "particles/swarm_store.hpp"
 
 namespace silt {
 
 struct Particles::Impl : Engine {
   using Engine::Engine;
+  SettleOptions settle_options;
   SwarmStore swarm;
 };
 
 Particles::Particles(const Mesh& mesh, Options& options, const Vec3& gravity)
     : impl_(std::make_unique<Impl>(mesh, options, gravity)) {
-  SettleOptions settle;
-  options.read("settle", settle);
-  impl_->settle(settle);
+  options.read("settle", impl_->settle_options);
 }
+
+std::unique_ptr<Particles> Particles::create(const Mesh& mesh, Options& options, const Vec3& gravity) {
+  if (options.names("insertion", Options::declared<InsertionOptions>()).empty()) return nullptr;
+  return std::make_unique<Particles>(mesh, options, gravity);
+}
+
+void Particles::settle() { impl_->settle(impl_->settle_options); }
+
 Particles::~Particles() = default;
 
 int Particles::owned() const { return impl_->store.owned; }

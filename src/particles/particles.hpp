@@ -55,12 +55,17 @@ class Materials;
 /// Indices are valid until the next advance() or add(); `id` is for ever.
 class Particles {
  public:
-  /// Reads materials, contact laws, walls, insertions; creates and settles the particles. Collective.
+  /// The particles of a case, null when it inserts none. Collective.
+  static std::unique_ptr<Particles> create(const Mesh& mesh, Options& options, const Vec3& gravity);
+  /// Reads materials, contact laws and walls, and makes every `-insertion_<name>_...`. Collective.
   Particles(const Mesh& mesh, Options& options, const Vec3& gravity);
   ~Particles();
 
   /// Creates particles; the seeds are the same on every rank. Throws UserError for one outside the mesh. Collective.
   void add(const std::vector<Seed>& seeds);
+
+  /// Lets the particles come to rest without fluid, as `-settle_...` says; before the first advance(). Collective.
+  void settle();
 
   int owned() const;
   long long total() const;  ///< on all ranks

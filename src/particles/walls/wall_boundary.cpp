@@ -8,27 +8,13 @@
 #include "base/error.hpp"
 
 namespace silt {
-namespace {
-
-struct BoundaryOptions {
-  std::string role = "wall", material;
-  void options(OptionGroup& option) {
-    option("particles", role, {"wall", "outlet", "open"},
-           "what the boundary is to particles: a wall (default of every fluid type but pressure), an outlet where they "
-           "leave, or open (no wall; a particle that passes is an error)");
-    option("material", material, "material of the wall; default: the first material in alphabetical order");
-  }
-};
-
-}  // namespace
-
 std::vector<WallBoundary> read_wall_boundaries(const Mesh& mesh, Options& options,
                                                const std::vector<std::string>& materials) {
   std::vector<WallBoundary> result;
   for (const auto& name : mesh.boundaries) {
     const std::string prefix = "boundary_" + name;
     const std::string type = options.find(prefix + "_type").value_or("");
-    BoundaryOptions chosen;
+    WallBoundaryOptions chosen;
     if (type == "pressure") chosen.role = "outlet";
     options.read(prefix, chosen);
     WallBoundary boundary;

@@ -16,6 +16,17 @@ enum class BoundaryRole {
   open     ///< no wall and no outlet: a particle whose centre passes it is an error that the engine reports
 };
 
+/// The options `-boundary_<name>_...` of the particles.
+struct WallBoundaryOptions {
+  std::string role = "wall", material;
+  void options(OptionGroup& option) {
+    option("particles", role, {"wall", "outlet", "open"},
+           "what the boundary is to particles: a wall (default of every fluid type but pressure), an outlet where they "
+           "leave, or open (no wall; a particle that passes is an error)");
+    option("material", material, "material of the wall; default: the first material in alphabetical order");
+  }
+};
+
 /// One boundary of the mesh for the particles, by the options `-boundary_<name>_particles`, `_material`, and
 /// `_velocity` where the boundary is `no_slip` (or has no fluid type): the velocity of the wall's material, the shape
 /// staying where it is (a conveyor, a lid, a rotating drum's shell).

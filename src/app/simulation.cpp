@@ -1,0 +1,214 @@
+#include "app/simulation.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/catalogue.hpp"
+#include "base/error.hpp"
+#include "particles/insertion/insertion_options.hpp"
+
+namespace silt {
+
+void CaseOptions::options(OptionGroup& option) {
+  option("title", title, "what the run is called in its output");
+  option("gravity", gravity, "m/s2", "acceleration of gravity");
+}
+
+void TimeOptions::options(OptionGroup& option) {
+  option("end", end, "s", "end of the run", non_negative);
+  option("step", step, "s", "fluid step; with -time_courant the longest one", positive);
+  option("courant", courant, "-", "target of the largest |u| dt/h, which the step follows; 0: constant step",
+         non_negative);
+  option("least_step", least_step, "s",
+         "a step that must be shorter than this stops the run; 0: a thousandth of -time_step", non_negative);
+}
+
+/// Adds the wall time of its scope to a task.
+class Simulation::Stopwatch {
+ public:
+  Stopwatch(Simulation& simulation, Task task) : seconds_(simulation.seconds_[task]) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Simulation::Simulation(Options& options) : options_(options) {
+  options.read("", case_);
+  options.read("time", time_options_);
+  MeshOptions mesh;
+  options.read("mesh", mesh);
+  mesh_ = std::make_unique<Mesh>(mesh);
+  fluid_ = Fluid::create(*mesh_, options, case_.gravity);
+  particles_ = Particles::create(*mesh_, options, case_.gravity);
+  if (!fluid_ && !particles_)
+    throw UserError("there is neither a fluid (-fluid_type) nor a particle (-insertion_<name>_...) to run");
+  if (fluid_ && particles_)
+    coupling_ = std::make_unique<Coupling>(*mesh_, *particles_, *fluid_, options, case_.gravity);
+  const bool flow = fluid_ != nullptr, grains = particles_ != nullptr;
+  output_ = std::make_unique<Output>(*mesh_, options, flow, grains);
+  diagnostics_ = std::make_unique<Diagnostics>(*mesh_, options, case_.gravity, flow, grains);
+  probes_ = std::make_unique<Probes>(*mesh_, options, flow);
+  profiles_ = std::make_unique<Profiles>(*mesh_, options, grains);
+  budget_ = std::make_unique<Budget>(options, flow, grains);
+  auto through_time = diagnostics_->columns(), along_lines = probes_->line_columns();
+  for (const auto& column : probes_->columns()) through_time.push_back(column);
+  for (const auto& column : profiles_->columns()) along_lines.push_back(column);
+  expectations_ = std::make_unique<Expectations>(options, through_time, along_lines);
+  progress_ = std::make_unique<Progress>(options);
+  if (time_options_.least_step == 0) time_options_.least_step = 1e-3 * time_options_.step;
+  options.refuse_unknown(&catalogue());
+  now_.fluid = fluid_.get();
+  now_.particles = particles_.get();
+}
+
+std::string Simulation::description() const {
+  std::vector<std::string> lines;
+  lines.push_back(case_.title);
+  lines.push_back(fmt::format("mesh       {} cells ({}), {} nodes, {} rank{}", mesh_->total_cells, name(mesh_->cell),
+                              mesh_->total_nodes, mpi_size(), mpi_size() > 1 ? "s" : ""));
+  if (fluid_)
+    lines.push_back(fmt::format("fluid      {}; {} fluid unknowns", fluid_->description(), fluid_->unknowns()));
+  if (particles_)
+    lines.push_back(fmt::format("particles  {}; step {:.3g} s ({})", particles_->total(), particles_->time_step(),
+                                particles_->time_step_reason()));
+  if (coupling_) lines.push_back(fmt::format("coupling   {}", coupling_->description()));
+  lines.push_back(
+      fmt::format("time       to {:g} s, step {:g} s{}; output {}", time_options_.end, time_options_.step,
+                  time_options_.courant > 0 ? fmt::format(", Courant number {:g}", time_options_.courant) : "",
+                  output_->directory().options().directory));
+  return fmt::format("{}\n", fmt::join(lines, "\n"));
+}
+
+int Simulation::check() {
+  progress_->header(description());
+  progress_->line("the case is valid; nothing was run or written");
+  return 0;
+}
+
+int Simulation::run() {
+  start();
+  while (now_.time < time_options_.end * (1 - 1e-12)) {
+    choose_step();
+    step();
+    report();
+  }
+  finish();
+  return expectations_->judge(output_->directory(), *probes_, *profiles_) ? 0 : 1;
+}
+
+void Simulation::start() {
+  output_->start(record_of(options_));
+  progress_->header(description());
+  if (particles_) particles_->settle();
+  if (coupling_) coupling_->start();
+  diagnostics_->start(output_->directory());
+  probes_->start(output_->directory());
+  budget_->start(output_->directory(), fluid_.get(), particles_.get());
+  progress_->start(now_.time, time_options_.end);
+  report();
+}
+
+/// The step asked for, shortened by the Courant target and a failed solve, so that output times and the end are met.
+void Simulation::choose_step() {
+  double longest = time_options_.step;
+  if (shortened_ > 0) {
+    longest = std::min(longest, shortened_);
+    shortened_ *= 1.3;
+    if (shortened_ > time_options_.step) shortened_ = 0;
+  }
+  if (fluid_ && time_options_.courant > 0) {
+    const double rate = fluid_->courant_rate();
+    if (rate > 0) longest = std::min(longest, time_options_.courant / rate);
+    if (now_.step > 0) longest = std::min(longest, 1.2 * now_.dt);
+  }
+  const double left = std::min(output_->next(now_.time), time_options_.end) - now_.time;
+  // Equal steps up to the target leave no sliver at its end.
+  dt_ = left / std::max(1.0, std::ceil(left / longest * (1 - 1e-9)));
+}
+
+/// Takes one step; when the fluid cannot, both phases go back to its start and a shorter one is tried.
+void Simulation::step() {
+  std::shared_ptr<const Particles::Snapshot> before;
+  if (fluid_ && particles_) before = particles_->snapshot();
+  for (;;) {
+    try {
+      attempt();
+      return;
+    } catch (const SolveFailure& failure) {
+      dt_ *= 0.5;
+      shortened_ = dt_;
+      if (dt_ < time_options_.least_step) {
+        if (particles_) particles_->restore(*before);
+        output_->write(now_);
+        throw RunError(fmt::format(
+            "the step at t = {:g} s failed down to {:g} s (-time_least_step): {}; the last good state is written",
+            now_.time, 2 * dt_, failure.what()));
+      }
+      progress_->line(fmt::format("t = {:g} s: {}; trying a step of {:g} s", now_.time, failure.what(), dt_));
+      if (particles_) particles_->restore(*before);
+    }
+  }
+}
+
+/// Particles first, with the flow of the step's start; then the flow, with what they did to it; then the account is
+/// settled.
+void Simulation::attempt() {
+  if (coupling_) {
+    const Stopwatch watch(*this, exchanging);
+    coupling_->before_particles(dt_);
+  }
+  if (particles_) {
+    const Stopwatch watch(*this, moving_particles);
+    now_.particle_step = particles_->advance(now_.time, dt_);
+  }
+  if (coupling_) {
+    const Stopwatch watch(*this, exchanging);
+    coupling_->before_fluid(dt_);
+  }
+  if (fluid_) {
+    const Stopwatch watch(*this, solving_fluid);
+    now_.fluid_step = fluid_->advance(now_.time, dt_);
+  }
+  if (coupling_) {
+    const Stopwatch watch(*this, exchanging);
+    coupling_->after_fluid(dt_);
+  }
+  now_.time += dt_;
+  now_.dt = dt_;
+  ++now_.step;
+}
+
+void Simulation::report() {
+  const Stopwatch watch(*this, writing);
+  if (now_.step > 0)
+    now_.ledger_residual = budget_->close(now_, particles_.get(), coupling_ ? &coupling_->ledger() : nullptr);
+  Quantities quantities;
+  diagnostics_->sample(now_, quantities);
+  probes_->sample(now_, quantities);
+  profiles_->sample(now_);
+  expectations_->sample(now_.time, quantities);
+  if (output_->due(now_.time) || now_.time >= time_options_.end * (1 - 1e-12)) {
+    output_->write(now_);
+    probes_->write_lines(now_);
+    profiles_->write(output_->directory());
+  }
+  progress_->step(now_);
+}
+
+void Simulation::finish() {
+  progress_->finish(now_);
+  double total = 0;
+  for (double s : seconds_) total += s;
+  progress_->line(fmt::format(
+      "timing loop {:.3f} s: particles {:.3f}, fluid {:.3f}, coupling {:.3f}, output {:.3f}; {} steps", total,
+      seconds_[moving_particles], seconds_[solving_fluid], seconds_[exchanging], seconds_[writing], now_.step));
+}
+
+}  // namespace silt

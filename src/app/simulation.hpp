@@ -1,0 +1,86 @@
+#pragma once
+#include <array>
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "app/budget.hpp"
+#include "app/diagnostics.hpp"
+#include "app/expectations.hpp"
+#include "app/moment.hpp"
+#include "app/output.hpp"
+#include "app/probes.hpp"
+#include "app/profiles.hpp"
+#include "app/progress.hpp"
+#include "base/mesh.hpp"
+#include "base/options.hpp"
+#include "coupling/coupling.hpp"
+#include "fluid/fluid.hpp"
+#include "particles/particles.hpp"
+
+namespace silt {
+
+/// `-title` and `-gravity`.
+struct CaseOptions {
+  std::string title = "untitled";
+  Vec3 gravity = Vec3(0, 0, -9.81);
+  void options(OptionGroup& option);
+};
+
+/// The options `-time_...`.
+struct TimeOptions {
+  double end = 1;
+  double step = 1e-3;
+  double courant = 0;
+  double least_step = 0;
+  void options(OptionGroup& option);
+};
+
+/// One run: owns the parts and moves them through time. A pure particle run and a pure flow run are the same loop with
+/// an empty partner.
+class Simulation {
+ public:
+  /// Reads every option and builds the parts; throws UserError before anything is computed or written. Collective.
+  explicit Simulation(Options& options);
+
+  /// Says what would run and returns 0. Collective.
+  int check();
+  /// Runs to the end; returns 0, or 1 when an expected figure was missed. Collective.
+  int run();
+
+ private:
+  void start();
+  void choose_step();
+  void step();
+  void attempt();
+  void report();
+  void finish();
+  std::string description() const;
+
+  Options& options_;
+  CaseOptions case_;
+  TimeOptions time_options_;
+  std::unique_ptr<Mesh> mesh_;
+  std::unique_ptr<Fluid> fluid_;
+  std::unique_ptr<Particles> particles_;
+  std::unique_ptr<Coupling> coupling_;
+
+  std::unique_ptr<Output> output_;
+  std::unique_ptr<Diagnostics> diagnostics_;
+  std::unique_ptr<Probes> probes_;
+  std::unique_ptr<Profiles> profiles_;
+  std::unique_ptr<Budget> budget_;
+  std::unique_ptr<Expectations> expectations_;
+  std::unique_ptr<Progress> progress_;
+
+  Moment now_;
+  double dt_ = 0;         ///< s, the coming step
+  double shortened_ = 0;  ///< s, the longest step allowed after a failed solve; 0: none failed lately
+
+  /// Where the wall time of the loop goes.
+  enum Task { moving_particles, solving_fluid, exchanging, writing, tasks };
+  class Stopwatch;
+  std::array<double, tasks> seconds_{};
+};
+
+}  // namespace silt
