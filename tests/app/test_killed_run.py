@@ -48,6 +48,12 @@ def count_outputs(folder):
         return 0
 
 
+def fresh(out, started):
+    """Whether the run that started then has made the directory its own."""
+    record = os.path.join(out, "run.yaml")
+    return os.path.exists(record) and os.path.getmtime(record) >= started
+
+
 def check_left(folder, label):
     """What a stopped run must have left."""
     counts = [len(series.outputs(folder, name)) for name in ("fluid", "particles")]
@@ -80,11 +86,9 @@ def session(leader):
 
 def killed(silt, folder, ranks, label):
     out = os.path.join(folder, "out")
-    before = count_outputs(out)
     started = time.time()
     run = subprocess.Popen(["mpiexec", "-n", str(ranks), silt, "case.yaml"], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
-    fresh = lambda: os.path.exists(os.path.join(out, "run.yaml")) and os.path.getmtime(os.path.join(out, "run.yaml")) >= started - 1
-    while run.poll() is None and time.time() - started < 120 and not (fresh() and LEAST_OUTPUTS <= count_outputs(out) != before):
+    while run.poll() is None and time.time() - started < 120 and not (fresh(out, started) and count_outputs(out) >= LEAST_OUTPUTS):
         time.sleep(0.02)
     ended = run.poll() is not None
     # mpiexec hands nothing on when it is killed itself: its ranks go with it here, all in the session started above.
@@ -102,14 +106,25 @@ def killed(silt, folder, ranks, label):
 
 
 def full_disk(silt, folder):
-    """No file may grow beyond 100 kB: diagnostics.csv does at last."""
-    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
-    # Python ignores SIGXFSZ, and with restore_signals off so does the run: the write fails as on a full disk.
-    done = subprocess.run([silt, "case.yaml", "-output_interval", "1e-3"], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=limit, restore_signals=False, timeout=300)
-    lines = done.stderr.strip().splitlines()
-    expect(done.returncode == 1, f"full disk: exit code {done.returncode}: {done.stderr[-500:]}")
-    expect(len(lines) == 1 and lines[0].startswith("silt: error: cannot write"), f"full disk: {len(lines)} lines on stderr:\n{done.stderr[-1000:]}")
-    check_left(os.path.join(folder, "out"), "full disk")
+    """Once it runs, no file may grow beyond 60 kB: the next output does."""
+    # Python ignores SIGXFSZ, and with restore_signals off so does the run: a write then fails as on a full disk.
+    started = time.time()
+    run = subprocess.Popen([silt, "case.yaml"], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, restore_signals=False)
+    out = os.path.join(folder, "out")
+    while run.poll() is None and time.time() - started < 120 and not (fresh(out, started) and count_outputs(out) >= 2):
+        time.sleep(0.02)
+    if run.poll() is None:
+        resource.prlimit(run.pid, resource.RLIMIT_FSIZE, (60_000, 60_000))
+    try:
+        errors = run.communicate(timeout=120)[1]
+    except subprocess.TimeoutExpired:
+        run.kill()
+        wrong.append(f"full disk: the run goes on: {run.communicate()}")
+        return
+    lines = errors.strip().splitlines()
+    expect(run.returncode == 1, f"full disk: exit code {run.returncode}: {errors[-500:]}")
+    expect(len(lines) == 1 and lines[0].startswith("silt: error: cannot write out/"), f"full disk: {len(lines)} lines on stderr:\n{errors[-1000:]}")
+    check_left(out, "full disk")
 
 
 def main():
@@ -118,6 +133,9 @@ def main():
         with open(os.path.join(folder, "case.yaml"), "w") as file:
             file.write(CASE)
         killed(silt, folder, 2, "killed on two ranks")
+        if wrong:
+            print("\n".join(wrong))
+            return 1
         note = os.path.join(folder, "out", "notes.txt")
         with open(note, "w") as file:
             file.write("mine")
