@@ -96,6 +96,18 @@ void Coupling::place_particles() {
     throw RunError("a particle lies in no cell of the rank that holds it: the coupling cannot place it");
 }
 
+void Coupling::place_clamped(int p, int cell, const Vec3& x) {
+  double xi[3] = {0, 0, 0};
+  locator_.reference(cell, x.data(), xi);
+  double sum = 0;
+  for (int d = 0; d < mesh_.dimension; ++d) sum += xi[d] = std::clamp(xi[d], 0.0, 1.0);
+  const bool simplex = mesh_.cell == Cell::triangle || mesh_.cell == Cell::tetrahedron;
+  if (simplex && sum > 1) {
+    for (double& s : xi) s /= sum;
+  }
+  kernel_.place(p, cell, xi);
+}
+
 void Coupling::start() {
   prepare_filter();
   place_particles();
@@ -127,7 +139,9 @@ void Coupling::before_particles(double dt) {
   // Model B leaves the whole pressure gradient to the fluid; its drag is then that of model A over alpha (Zhou et al.
   // 2010).
   const bool model_a = fluid_.model_a();
-  // The static head acts on a particle by -V_p grad p when model A's pressure holds it, else here.
+  // The static head acts on a particle by -V_p grad p when model A's pressure holds it, else here. The fluid has its
+  // part of it: none when gravity is left out of its equation, rho g (gravity and the reaction of the buoyancy) in
+  // model B.
   const bool buoyant = fluid_.reduced_pressure() || !model_a;
   ledger_ = ExchangeLedger{};
   exchanged_ = 0;
@@ -158,11 +172,13 @@ void Coupling::before_fluid(double dt) {
   prepare_filter();
   place_particles();
   const int count = particles_.owned();
+  // Those that left in this step gave the fluid their impulse too: it goes to the last place they had.
+  const std::vector<Departed>& departed = particles_.departed();
+  const int all = count + static_cast<int>(departed.size());
+  kernel_.resize(all);
   responses_.resize(count);
-  at_particles_.resize(load_components * static_cast<std::size_t>(count));
+  at_particles_.assign(load_components * static_cast<std::size_t>(all), 0.0);
   nodal_.resize(load_components * static_cast<std::size_t>(mesh_.nodes));
-  // With the static head in model B's pressure the fluid feels the reaction of the buoyancy it gives.
-  const double reaction = !fluid_.model_a() && !fluid_.reduced_pressure() ? fluid_.density() * dt : 0;
   ledger_.particle_volume = 0;
   ledger_.drag_on_particles.setZero();
   ledger_.drag_on_fluid.setZero();
@@ -178,10 +194,17 @@ void Coupling::before_fluid(double dt) {
     q[0] = volume;
     q[1] = responses_[p].mass;
     for (int d = 0; d < 3; ++d) {
-      q[2 + d] = action.impulse[d] - reaction * volume * gravity_[d];
+      q[2 + d] = action.impulse[d];
       ledger_.drag_on_particles[d] += q[2 + d];
     }
     ledger_.particle_volume += volume;
+    exchanged_ += vec3(&q[2]).norm();
+  }
+  for (int p = count; p < all; ++p) {
+    const Departed& gone = departed[p - count];
+    place_clamped(p, gone.cell, gone.position);
+    double* q = &at_particles_[load_components * static_cast<std::size_t>(p)];
+    for (int d = 0; d < 3; ++d) ledger_.drag_on_particles[d] += q[2 + d] = gone.action.impulse[d];
     exchanged_ += vec3(&q[2]).norm();
   }
   kernel_.deposit(at_particles_, nodal_, load_components);
@@ -189,6 +212,7 @@ void Coupling::before_fluid(double dt) {
     for (int c = 0; c < load_components; ++c) nodal_[load_components * i + c] /= mass_[i] * depth_;
   }
   filter_->apply(nodal_.data(), load_components);
+  kernel_.resize(count);
 
   ParticleLoad& load = fluid_.load();
   solids_.resize(mesh_.nodes);

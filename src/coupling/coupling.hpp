@@ -78,6 +78,8 @@ class Coupling {
 
  private:
   void place_particles();
+  /// The point of the cell nearest to x in reference coordinates, for a particle that has left it.
+  void place_clamped(int p, int cell, const Vec3& x);
   void prepare_filter();
 
   const Mesh& mesh_;

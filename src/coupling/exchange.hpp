@@ -41,8 +41,8 @@ inline double held(const Vec3& start, const Vec3& now, const Vec3& fluid, const 
 /// What fluid and particles exchanged in one fluid step, each sum made once over the particles and once over the nodes.
 /// N s, all ranks.
 struct ExchangeLedger {
-  Vec3 drag_on_particles = Vec3::Zero();  ///< sum_p I_p, drag impulse the particles received in their substeps
-  Vec3 drag_on_fluid = Vec3::Zero();  ///< the load vector's total times dt, less the buoyancy's reaction: -sum_p I_p
+  Vec3 drag_on_particles = Vec3::Zero();      ///< sum_p I_p, drag impulse the particles received in their substeps
+  Vec3 drag_on_fluid = Vec3::Zero();          ///< the load vector's total times dt: -sum_p I_p
   Vec3 response_on_particles = Vec3::Zero();  ///< sum_p J_p, owed for the change of the fluid velocity
   Vec3 response_on_fluid = Vec3::Zero();      ///< -dt sum_i response_i (u^{n+1} - u^n)_i
   Vec3 pressure_on_particles = Vec3::Zero();  ///< -dt sum_p V_p grad p
