@@ -23,19 +23,19 @@ inline Response response(double mass, double exchange, double held, double dt) {
   return {free, (1 - held) * free + held * exchange * dt, held};
 }
 
-/// How much a particle was held back by contacts in the last step, 0 free ... 1 held: 1 - (v - v0).(w - v0) / |w -
-/// v0|^2, with w the velocity it would have reached alone, w = u + F/k + (v0 - u - F/k) exp(-k dt/m). Where it would
-/// hardly have moved (within 1e-3 of what drag and the other force each would have done), that says nothing and
-/// `before` stays. `force`: every force but drag and contacts, gravity included (N); `fluid`, `start`, `now`: u, v0, v
-/// (m/s).
+/// How much a particle was held back by contacts in the last step, 0 free ... 1 held: |v - w| / |w - v0| but at most 1,
+/// with w the velocity it would have reached alone, w = u + F/k + (v0 - u - F/k) exp(-k dt/m). Where neither drag nor
+/// the other force nor a contact changed the velocity by more than 1e-3 of what drag and force each would have done,
+/// that says nothing and `before` stays. `force`: every force but drag and contacts, gravity included (N); `fluid`,
+/// `start`, `now`: u, v0, v (m/s).
 inline double held(const Vec3& start, const Vec3& now, const Vec3& fluid, const Vec3& force, double mass,
                    double exchange, double dt, double before) {
   const double relaxed = -std::expm1(-exchange * dt / mass);  // 1 - exp(-k dt/m)
   const double pushed = exchange * dt > 1e-8 * mass ? relaxed / exchange : dt / mass;
-  const Vec3 by_drag = relaxed * (fluid - start), by_force = pushed * force, change = by_drag + by_force;
-  const double size = change.squaredNorm(), scale = by_drag.norm() + by_force.norm();
-  if (!(size > 1e-6 * scale * scale)) return before;
-  return 1 - std::clamp((now - start).dot(change) / size, 0.0, 1.0);
+  const Vec3 by_drag = relaxed * (fluid - start), by_force = pushed * force, alone = by_drag + by_force;
+  const double change = alone.norm(), missed = (now - start - alone).norm();
+  if (!(std::max(change, missed) > 1e-3 * (by_drag.norm() + by_force.norm()))) return before;
+  return missed < change ? missed / change : 1.0;
 }
 
 /// What fluid and particles exchanged in one fluid step, each sum made once over the particles and once over the nodes.
