@@ -79,6 +79,10 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
     pressure_[i] = initial_pressure(x, 0);
   }
   old_velocity_ = velocity_;
+  terms_.pressure = pressure_.data();
+  set_pressure_gradient();
+  if (has_weight_ && !initial_pressure_given_)  // what the start will find
+    for (int i = 0; i < n; ++i) vec3(&pressure_gradient_[3 * i]) = density_ * gravity;
 
   const std::size_t padded = loops_.padded_cells();
   cell_values_.assign(17 * padded, 0.0);
@@ -387,17 +391,19 @@ void PressureCorrection::solve(const Past& before, FluidStep& step, std::vector<
   mass_residual_ = -(flows + mesh_.dot(ones.data(), outflow_.data(), 1) + volume_rate) / (inflow > 0 ? inflow : 1);
 }
 
+void PressureCorrection::set_pressure_gradient() {
+  std::fill(pressure_gradient_.begin(), pressure_gradient_.end(), 0.0);
+  loops_.effective_gradient(terms_, pressure_gradient_.data());
+  mesh_.sum_shared(pressure_gradient_.data(), 3);
+  for (std::size_t i = 0; i < pressure_gradient_.size(); ++i) pressure_gradient_[i] /= mass_[i / 3];
+}
+
 void PressureCorrection::accept(const Past& before, double dt, std::vector<double>& phi,
                                 const std::vector<double>& divergence) {
   const int n = mesh_.nodes;
   const auto& outlet = boundaries_.pressure_boundary();
-  std::vector<double> gradient(3 * n, 0.0);
-  loops_.effective_gradient(terms_, gradient.data());
-  mesh_.sum_shared(gradient.data(), 3);
-  for (int i = 0; i < 3 * n; ++i) {
-    pressure_gradient_[i] = gradient[i] / mass_[i / 3];
-    velocity_change_[i] = solution_[i] - velocity_[i];
-  }
+  set_pressure_gradient();
+  for (int i = 0; i < 3 * n; ++i) velocity_change_[i] = solution_[i] - velocity_[i];
   std::swap(old_increment_, increment_);
   std::swap(increment_, phi);
   for (int i = 0; i < n; ++i) {

@@ -62,6 +62,7 @@ class PressureCorrection : public Fluid {
   /// The pressure that balances the forces on the fluid at rest, for a start of which no pressure is known.
   void set_static_pressure(const Past& before);
   void solve(const Past& before, FluidStep& step, std::vector<double>& phi, std::vector<double>& divergence);
+  void set_pressure_gradient();
   void accept(const Past& before, double dt, std::vector<double>& phi, const std::vector<double>& divergence);
   void check_balance(double flows, double volume_rate) const;
   FluidStep report(double dt) const;
