@@ -9,9 +9,6 @@ namespace {
 
 /// Largest system that the direct solver may rescue.
 constexpr PetscInt direct_rows = 120000;
-/// Largest plane Taylor-Hood system solved directly from the start: a sparse factor in the plane is cheap, and the
-/// Schur complement converges slowly in steady flow.
-constexpr PetscInt plane_rows = 300000;
 
 bool option_given(const std::string& name) {
   PetscBool found = PETSC_FALSE;
@@ -46,8 +43,7 @@ void NewtonSolver::create(SNES* snes, const char* prefix, bool direct) {
   SILT_PETSC(SNESGetKSP(*snes, &ksp));
   SILT_PETSC(KSPGetPC(ksp, &pc));
   const std::string options = std::string("-") + prefix;
-  const bool plane = system_.space().mesh.dimension == 2;
-  if (direct || (plane && !system_.equal_order() && rows_ <= plane_rows)) {
+  if (direct) {
     SILT_PETSC(KSPSetType(ksp, KSPPREONLY));
     SILT_PETSC(PCSetType(pc, PCLU));
   } else if (system_.equal_order()) {
