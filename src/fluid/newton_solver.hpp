@@ -8,7 +8,7 @@ namespace silt {
 /// Newton's method (SNES, option prefix `fluid_`) for the steps of a FlowSystem.
 ///
 /// Linear solver unless options say otherwise: equal order GMRES (right) with additive Schwarz, overlap 1, ILU(1);
-/// Taylor-Hood FGMRES with an upper Schur complement (selfp), block
+/// Taylor-Hood MUMPS in the plane, in space and for large systems FGMRES with an upper Schur complement (selfp), block
 /// ILU for the velocity and BoomerAMG for the pressure. When Newton fails and the system is small the step is tried
 /// once more with MUMPS.
 class NewtonSolver {
