@@ -67,7 +67,7 @@ TEST_CASE("A step that fails leaves the flow as it was", "[fluid][mpi]") {
   for (double u : flow.fluid->velocity()) CHECK(std::isfinite(u));
 }
 
-TEST_CASE("A flow goes on from its saved state with the same bits", "[fluid][mpi]") {
+TEST_CASE("A flow goes on from its saved state as if it had not stopped, on one rank to the bit", "[fluid][mpi]") {
   FlowCase flow(stirred_box()), restarted(stirred_box(), Vec3::Zero(), flow.mesh);
   const auto go = [](FlowCase& f) {
     load_bed(f);
@@ -79,9 +79,11 @@ TEST_CASE("A flow goes on from its saved state with the same bits", "[fluid][mpi
   for (std::size_t k = 0; k < from.size(); ++k) *to[k].values = *from[k].values;
   restarted.time = flow.time;
   for (int k = 0; k < 3; ++k) go(flow), go(restarted);
-  CHECK(difference(flow.fluid->velocity(), restarted.fluid->velocity()) == 0);
-  CHECK(difference(flow.fluid->pressure(), restarted.fluid->pressure()) == 0);
-  CHECK(difference(flow.fluid->pressure_gradient(), restarted.fluid->pressure_gradient()) == 0);
+  // On several ranks PETSc's matrix assembly adds the contributions to a shared entry in the order of their arrival.
+  const double allowed = mpi_size() == 1 ? 0 : 1e-10;
+  CHECK(difference(flow.fluid->velocity(), restarted.fluid->velocity()) <= allowed);
+  CHECK(difference(flow.fluid->pressure(), restarted.fluid->pressure()) <= allowed);
+  CHECK(difference(flow.fluid->pressure_gradient(), restarted.fluid->pressure_gradient()) <= 10 * allowed);
 }
 
 TEST_CASE("A direct pressure solver by option gives the same flow, also in a closed box", "[fluid][mpi]") {
