@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <thread>
 
 #include "app/catalogue.hpp"
@@ -51,6 +52,16 @@ int fail(const std::string& message, int code) {
   return code;
 }
 
+/// Builds the case. Where that fails, a mistyped option is named before what is missing because of it.
+std::unique_ptr<Simulation> build(Options& options) {
+  try {
+    return std::make_unique<Simulation>(options);
+  } catch (const UserError&) {
+    options.refuse_unknown(&catalogue());
+    throw;
+  }
+}
+
 int answer(const std::vector<std::string>& arguments) {
   Options options = Options::from_arguments(arguments);
   const bool talk = mpi_rank() == 0;
@@ -79,9 +90,8 @@ int answer(const std::vector<std::string>& arguments) {
   }
   const bool check = options.find("check").has_value();
   options.insert_into_petsc();
-  Simulation simulation(options);
-  if (check) return simulation.check();
-  return simulation.run();
+  const auto simulation = build(options);
+  return check ? simulation->check() : simulation->run();
 }
 
 }  // namespace

@@ -8,9 +8,27 @@
 
 #include "app/catalogue.hpp"
 #include "base/error.hpp"
+#include "fluid/boundary/boundary_conditions.hpp"
 #include "particles/insertion/insertion_options.hpp"
+#include "particles/walls/wall_boundary.hpp"
 
 namespace silt {
+namespace {
+
+/// Throws UserError for a condition on a boundary that the mesh has not (the sides of a periodic direction are none).
+void refuse_unknown_boundaries(const Mesh& mesh, const Options& options) {
+  auto properties = Options::declared<BoundaryOptions>();
+  for (const auto& property : Options::declared<WallBoundaryOptions>()) properties.push_back(property);
+  for (const auto& name : options.names("boundary", properties)) {
+    if (std::find(mesh.boundaries.begin(), mesh.boundaries.end(), name) != mesh.boundaries.end()) continue;
+    const std::string hint = nearest(name, mesh.boundaries);
+    throw UserError(fmt::format("-boundary_{}_...: the mesh has no boundary {}{}; there are {}", name, name,
+                                hint.empty() ? "" : fmt::format(" (did you mean {}?)", hint),
+                                fmt::join(mesh.boundaries, ", ")));
+  }
+}
+
+}  // namespace
 
 void CaseOptions::options(OptionGroup& option) {
   option("title", title, "what the run is called in its output");
@@ -45,6 +63,7 @@ Simulation::Simulation(Options& options) : options_(options) {
   MeshOptions mesh;
   options.read("mesh", mesh);
   mesh_ = std::make_unique<Mesh>(mesh);
+  refuse_unknown_boundaries(*mesh_, options);
   fluid_ = Fluid::create(*mesh_, options, case_.gravity);
   particles_ = Particles::create(*mesh_, options, case_.gravity);
   if (!fluid_ && !particles_)

@@ -15,6 +15,9 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
   if (fluid.type == "none") return nullptr;
   for (const char* name : {"fluid_density", "fluid_viscosity"})
     if (!options.given(name)) throw UserError(std::string("-") + name + " is missing: the fluid needs it");
+  if (fluid.scheme != "monolithic" && options.find("fluid_element").value_or("equal_order") != "equal_order")
+    throw UserError(fmt::format("option -fluid_element ({}): '{}' needs -fluid_scheme monolithic",
+                                options.origin("fluid_element"), *options.find("fluid_element")));
   auto made = fluid.scheme == "pressure_correction" ? make_pressure_correction(mesh, options, fluid, gravity)
                                                     : make_monolithic(mesh, options, fluid, gravity);
   made->description_ = fmt::format("{}, {} kg/m3, {} Pa s; {}, BDF{}, model {}", fluid.type, fluid.density,
