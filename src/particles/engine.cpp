@@ -60,29 +60,6 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity)
   if (!seeds.empty()) add(seeds);
 }
 
-void Engine::stop_if_any(const std::string& text) const {
-  int size = 1, rank = 0;
-  MPI_Comm_size(communicator_, &size);
-  MPI_Comm_rank(communicator_, &rank);
-  int first = text.empty() ? size : rank, lowest = first;
-  MPI_Allreduce(&first, &lowest, 1, MPI_INT, MPI_MIN, communicator_);
-  if (lowest == size) return;
-  int length = static_cast<int>(text.size());
-  MPI_Bcast(&length, 1, MPI_INT, lowest, communicator_);
-  std::string told = rank == lowest ? text : std::string(length, ' ');
-  MPI_Bcast(told.data(), length, MPI_CHAR, lowest, communicator_);
-  throw RunError(told);
-}
-
-std::string Engine::describe(const Motion& motion, std::int64_t id) const {
-  return fmt::format(
-      "particle {} at ({:.6g}, {:.6g}, {:.6g}) m, velocity ({:.6g}, {:.6g}, {:.6g}) m/s, spin ({:.6g}, {:.6g}, {:.6g}) "
-      "rad/s, radius "
-      "{:.6g} m, rank {}",
-      id, motion.position[0], motion.position[1], motion.position[2], motion.velocity[0], motion.velocity[1],
-      motion.velocity[2], motion.spin[0], motion.spin[1], motion.spin[2], motion.radius, mpi_rank());
-}
-
 void Engine::add(const std::vector<Seed>& seeds) {
   std::vector<Vec3> points;
   points.reserve(seeds.size());
@@ -157,42 +134,6 @@ void Engine::add(const std::vector<Seed>& seeds) {
                       "would touch twice; allowed: at least {:g} m",
                       periods_.length[d], 2 * largest_radius_, 2 * reach));
   started_ = false;
-}
-
-void Engine::prepare_fluid(double h) {
-  bool acts = false;
-  for (const auto& action : store.action)
-    acts |= action.exchange != 0 || action.force[0] != 0 || action.force[1] != 0 || action.force[2] != 0;
-  fluid_ = mpi_any(acts);
-  if (!fluid_) return;
-  store.drag.reserve(store.owned);
-  for (int p = 0; p < store.owned; ++p) {
-    const FluidAction& action = store.action[p];
-    DragStep step{};
-    for (int d = 0; d < 3; ++d) {
-      step.velocity[d] = action.velocity[d];
-      step.acceleration[d] = action.force[d] * store.motion[p].inverse_mass;
-    }
-    step.rate = action.exchange * store.motion[p].inverse_mass;
-    const double z = step.rate * h;
-    // phi = (1 - exp(-z))/rate, psi = (h - phi)/rate; their series where the differences would lose digits.
-    step.first = z > 0 ? -std::expm1(-z) / step.rate : h;
-    step.second = z > 1e-2
-                      ? (h - step.first) / step.rate
-                      : h * h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z * (1.0 / 120 - z * (1.0 / 720 - z / 5040)))));
-    step.corrector = step.second / h;
-    store.drag[p] = step;
-  }
-}
-
-void Engine::collect_fluid() {
-  if (!fluid_) return;
-  for (int p = 0; p < store.owned; ++p)
-    for (int d = 0; d < 3; ++d) {
-      store.action[p].impulse[d] += store.drag[p].impulse[d];
-      impulses.drag[d] += store.drag[p].impulse[d];
-      store.drag[p].impulse[d] = 0;
-    }
 }
 
 void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
@@ -351,23 +292,6 @@ void Engine::evaluate(double time, double dt) {
   }
 }
 
-std::string Engine::describe_deepest(int contact) const {
-  const int i = contacts.contact_i()[contact], j = contacts.contact_j()[contact];
-  return fmt::format("{} overlaps another by more than {:g} of the smaller radius (-particles_overlap_limit): {}",
-                     describe(store.motion[i], store.id[i]), options_.overlap_limit,
-                     describe(store.motion[j], store.id[j]));
-}
-
-std::string Engine::find_bad() const {
-  for (int p = 0; p < store.owned; ++p) {
-    const Motion& motion = store.motion[p];
-    double sum = 0;
-    for (int d = 0; d < 3; ++d) sum += motion.position[d] + motion.velocity[d] + motion.spin[d];
-    if (!std::isfinite(sum)) return "not a number: " + describe(motion, store.id[p]);
-  }
-  return "a particle's position is not a number";
-}
-
 Integration Engine::pass(double h) {
   Integration step;
   step.motion = store.motion.data();
@@ -446,110 +370,6 @@ ParticleStep Engine::advance(double time, double dt) {
   result.removed = removed;
   largest_overlap(result);
   return result;
-}
-
-void Engine::largest_overlap(ParticleStep& step) const {
-  long long touching = wall_contacts.count();
-  double largest = 0;
-  for (int k = 0; k < contacts.contacts(); ++k) {
-    const int i = contacts.contact_i()[k], j = contacts.contact_j()[k];
-    touching += i < store.owned;  // a pair across ranks is counted by the owner of its first particle
-    const Motion &a = store.motion[i], &b = store.motion[j];
-    double square = 0;
-    for (int d = 0; d < 3; ++d) {
-      double distance = a.position[d] - b.position[d];
-      distance -= periods_.length[d] * std::nearbyint(distance * periods_.inverse[d]);
-      square += distance * distance;
-    }
-    largest = std::max(largest, (a.radius + b.radius - std::sqrt(square)) / std::min(a.radius, b.radius));
-  }
-  for (const WallPoint& point : wall_contacts.points())
-    largest = std::max(largest, 1 - point.distance / store.motion[point.particle].radius);
-  step.contacts = mpi_sum(touching);
-  step.largest_overlap = mpi_max(largest);
-}
-
-void Engine::settle(const SettleOptions& options) {
-  if (options.time <= 0 || total == 0) return;
-  settling_ = true;
-  laws_.scale_friction(options.friction_factor);
-  started_ = false;
-  constexpr int chunks = 100;
-  for (int c = 0; c < chunks; ++c) {
-    advance(-options.time * (chunks - c) / chunks, options.time / chunks);
-    double square = 0;
-    for (int p = 0; p < store.owned; ++p) square += vec3(store.motion[p].velocity).squaredNorm();
-    if (total == 0 || mpi_sum(square) < total * options.speed * options.speed) break;
-  }
-  laws_.scale_friction(1);
-  settling_ = false;
-  impulses = {};
-}
-
-ParticleStep Engine::hold(double dt) {
-  if (!started_) start(0);  // they may not overlap more than others
-  Vec3 support = Vec3::Zero();
-  for (int p = 0; p < store.owned; ++p) {
-    FluidAction& action = store.action[p];
-    Motion& motion = store.motion[p];
-    const double mass = 1 / motion.inverse_mass;
-    impulses.kicks -= mass * vec3(motion.velocity);  // a kick on a held particle moves nothing
-    action.held = 1;
-    for (int d = 0; d < 3; ++d) {
-      motion.velocity[d] = motion.spin[d] = 0;
-      const double drag = action.exchange * action.velocity[d] * dt, force = action.force[d] * dt;
-      const double weight = mass * gravity_[d] * dt;
-      action.impulse[d] += drag;
-      impulses.drag[d] += drag;
-      impulses.fluid_force[d] += force;
-      impulses.gravity[d] += weight;
-      support[d] += drag + force + weight;
-    }
-  }
-  impulses.walls -= support;
-  ParticleStep result;
-  result.substeps = 1;
-  result.removed = removed;
-  largest_overlap(result);
-  return result;
-}
-
-std::shared_ptr<const Particles::Snapshot> Engine::snapshot() const {
-  ContactMemory memory = memory_;
-  ParticleRows wall_memory = wall_memory_;
-  if (!detached_) {
-    contacts.gather(store, memory);
-    wall_contacts.gather(store.owned, wall_memory);
-  }
-  const int n = store.owned;
-  return std::make_shared<const Particles::Snapshot>(Particles::Snapshot{
-      n, std::vector<Motion>(store.motion.data(), store.motion.data() + n),
-      std::vector<Load>(store.present.data(), store.present.data() + n),
-      std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n), store.cell, store.action, std::move(memory),
-      std::move(wall_memory), impulses, total, removed, next_id_, wall_total_, started_});
-}
-
-void Engine::restore(const Particles::Snapshot& saved) {
-  store.owned = saved.owned;
-  store.ghosts = 0;
-  store.reserve(saved.owned);
-  std::copy(saved.motion.begin(), saved.motion.end(), store.motion.data());
-  std::copy(saved.present.begin(), saved.present.end(), store.present.data());
-  store.id = saved.id;
-  store.cell = saved.cell;
-  store.action = saved.action;
-  contacts.clear();
-  memory_ = saved.contacts;
-  wall_memory_ = saved.walls;
-  detached_ = true;
-  impulses = saved.impulses;
-  total = saved.total;
-  removed = saved.removed;
-  next_id_ = saved.next_id;
-  wall_total_ = saved.wall_total;
-  started_ = saved.started;
-  departed.clear();
-  fluid_ = false;
 }
 
 }  // namespace silt

@@ -18,7 +18,7 @@ struct FluidAction {
   double force[3] = {
       0, 0,
       0};  ///< N, every other fluid force, constant over the fluid step (pressure gradient, buoyancy, owed impulse)
-  double held = 1;             ///< 0: free, 1: held by contacts (the safe guess of the first step; coupling keeps it here)
+  double held = 1;  ///< 0: free, 1: held by contacts (the safe guess of the first step; coupling keeps it here)
   double owed[3] = {0, 0, 0};  ///< N s, owed by the last fluid step, given as a force over the next; coupling keeps it
   double impulse[3] = {0, 0, 0};         ///< N s, drag impulse received since the last reset; the engine adds
   double start_velocity[3] = {0, 0, 0};  ///< m/s, velocity at the start of the fluid step; set by the coupling

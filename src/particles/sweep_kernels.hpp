@@ -3,189 +3,13 @@
 // buffers that stay in the first-level cache: each loop fits the processor's reorder buffer, and each law is chosen
 // once a block.
 #pragma once
-#include <type_traits>
-
-#include "particles/contact_models.hpp"
+#include "particles/integration_kernels.hpp"
+#include "particles/law_stages.hpp"
 #include "particles/pack.hpp"
 #include "particles/sweep.hpp"
 
 namespace silt {
 namespace SILT_ISA {
-
-inline constexpr int block_size = 64;
-
-/// The contacts of a block, one array a quantity.
-struct alignas(64) Block {
-  double normal[3][block_size], overlap[block_size], approach[block_size];
-  double slip[3][block_size], spin[3][block_size];
-  double effective_radius[block_size], effective_mass[block_size];
-  double arm_i[block_size], arm_j[block_size];
-  double pair[block_size];  ///< number of the pair of materials
-  double normal_force[block_size], damping[block_size], contact_radius[block_size];
-  double force[3][block_size], torque[3][block_size];
-};
-
-SILT_INLINE Contact<Pack> contact_at(const Block& block, int o) {
-  Contact<Pack> contact;
-  for (int d = 0; d < 3; ++d) {
-    contact.normal[d] = load(&block.normal[d][o]);
-    contact.slip[d] = load(&block.slip[d][o]);
-    contact.spin[d] = load(&block.spin[d][o]);
-  }
-  contact.overlap = load(&block.overlap[o]);
-  contact.approach = load(&block.approach[o]);
-  contact.effective_radius = load(&block.effective_radius[o]);
-  contact.effective_mass = load(&block.effective_mass[o]);
-  return contact;
-}
-
-SILT_INLINE NormalLoad<Pack> normal_load_at(const Block& block, int o) {
-  return {load(&block.normal_force[o]), load(&block.damping[o]), load(&block.contact_radius[o])};
-}
-
-template <class Struct>
-inline constexpr int packs_in = std::is_empty_v<Struct> ? 0 : int(sizeof(Struct) / sizeof(Pack));
-
-/// The constants of the contacts at o: the same for all lanes with one material, else looked up by their pair.
-template <class Constants, bool several>
-SILT_INLINE Constants constants_at(const LawStage& stage, int materials, const Block& block, int o) {
-  Constants constants;
-  Pack* entry = reinterpret_cast<Pack*>(&constants);
-  const int pairs = materials * materials;
-  for (int c = 0; c < packs_in<Constants>; ++c) {
-    if constexpr (several) {
-      Vector value;
-      for (int k = 0; k < lanes; ++k) value[k] = stage.constants[c * pairs + int(block.pair[o + k])];
-      entry[c] = value;
-    } else {
-      entry[c] = Pack(stage.constants[c * pairs]);
-    }
-  }
-  return constants;
-}
-
-/// Where the history of the block's first contact stands.
-struct HistoryAt {
-  double* first;
-  std::size_t stride;
-};
-
-template <class History>
-SILT_INLINE History history_at(const HistoryAt& at, int o) {
-  History history;
-  Pack* entry = reinterpret_cast<Pack*>(&history);
-  for (int c = 0; c < packs_in<History>; ++c) entry[c] = load(at.first + c * at.stride + o);
-  return history;
-}
-template <class History>
-SILT_INLINE void keep_history(const History& history, const HistoryAt& at, int o) {
-  const Pack* entry = reinterpret_cast<const Pack*>(&history);
-  for (int c = 0; c < packs_in<History>; ++c) store(at.first + c * at.stride + o, entry[c]);
-}
-
-struct StageCall {
-  const LawSetup* laws;
-  const LawStage* stage;
-  HistoryAt history;
-  int count;
-  double dt;
-};
-using StageFunction = void (*)(Block&, const StageCall&);
-
-template <class Model, bool several>
-void normal_stage(Block& block, const StageCall& call) {
-  using Constants = typename Model::template Constants<Pack>;
-  using History = typename Model::template History<Pack>;
-  for (int o = 0; o < call.count; o += lanes) {
-    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
-    History history = history_at<History>(call.history, o);
-    const NormalLoad<Pack> result = Model::template load<Pack>(contact_at(block, o), constants, history);
-    keep_history(history, call.history, o);
-    store(&block.normal_force[o], result.force);
-    store(&block.damping[o], result.damping);
-    store(&block.contact_radius[o], result.contact_radius);
-  }
-}
-
-template <class Model, bool several>
-void tangential_stage(Block& block, const StageCall& call) {
-  using Constants = typename Model::template Constants<Pack>;
-  using History = typename Model::template History<Pack>;
-  const Pack dt(call.dt);
-  for (int o = 0; o < call.count; o += lanes) {
-    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
-    History history = history_at<History>(call.history, o);
-    const Contact<Pack> contact = contact_at(block, o);
-    const NormalLoad<Pack> normal = normal_load_at(block, o);
-    Pack force[3];
-    Model::template force<Pack>(contact, normal, constants, dt, history, force);
-    keep_history(history, call.history, o);
-    for (int d = 0; d < 3; ++d) store(&block.force[d][o], force[d] + normal.force * contact.normal[d]);
-  }
-}
-
-template <class Model, bool several>
-void rolling_stage(Block& block, const StageCall& call) {
-  using Constants = typename Model::template Constants<Pack>;
-  using History = typename Model::template History<Pack>;
-  const Pack dt(call.dt);
-  for (int o = 0; o < call.count; o += lanes) {
-    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
-    History history = history_at<History>(call.history, o);
-    Pack torque[3];
-    Model::template torque<Pack>(contact_at(block, o), normal_load_at(block, o), constants, dt, history, torque);
-    keep_history(history, call.history, o);
-    for (int d = 0; d < 3; ++d) store(&block.torque[d][o], torque[d]);
-  }
-}
-
-/// The stage functions of a list of models, by place in the list.
-template <bool several, class... Model>
-SILT_INLINE StageFunction normal_function(const Models<Model...>*, int model) {
-  static constexpr StageFunction functions[] = {normal_stage<Model, several>...};
-  return functions[model];
-}
-template <bool several, class... Model>
-SILT_INLINE StageFunction tangential_function(const Models<Model...>*, int model) {
-  static constexpr StageFunction functions[] = {tangential_stage<Model, several>...};
-  return functions[model];
-}
-template <bool several, class... Model>
-SILT_INLINE StageFunction rolling_function(const Models<Model...>*, int model) {
-  static constexpr StageFunction functions[] = {rolling_stage<Model, several>...};
-  return functions[model];
-}
-template <class... Model>
-SILT_INLINE bool rolls(const Models<Model...>*, int model) {
-  static constexpr bool acts[] = {Model::acts...};
-  return acts[model];
-}
-
-/// The three laws of a run, looked up once a sweep.
-struct Laws {
-  StageFunction normal, tangential, rolling;
-  bool rolls;
-  SILT_INLINE explicit Laws(const LawSetup& setup) {
-    const NormalModels* normals = nullptr;
-    const TangentialModels* tangentials = nullptr;
-    const RollingModels* rollings = nullptr;
-    const bool several = setup.materials > 1;
-    const int n = setup.normal.model, t = setup.tangential.model, r = setup.rolling.model;
-    normal = several ? normal_function<true>(normals, n) : normal_function<false>(normals, n);
-    tangential = several ? tangential_function<true>(tangentials, t) : tangential_function<false>(tangentials, t);
-    rolling = several ? rolling_function<true>(rollings, r) : rolling_function<false>(rollings, r);
-    rolls = SILT_ISA::rolls(rollings, r);
-  }
-  SILT_INLINE void run(Block& block, const LawSetup& setup, double* history, std::size_t stride, int count,
-                       double dt) const {
-    const auto call = [&](const LawStage& stage) {
-      return StageCall{&setup, &stage, {history + stage.first_history * stride, stride}, count, dt};
-    };
-    normal(block, call(setup.normal));
-    tangential(block, call(setup.tangential));
-    if (rolls) rolling(block, call(setup.rolling));
-  }
-};
 
 SILT_INLINE void nearest_image(const Periods& periods, Pack* distance) {
   for (int d = 0; d < 3; ++d)
@@ -257,8 +81,6 @@ SILT_INLINE void pair_kinematics(PairSweep& sweep, Block& block, int first, int 
       }
   }
 }
-
-SILT_INLINE Quad quad(const double* p) { return *reinterpret_cast<const Quad*>(p); }
 
 /// Adds the contacts' forces to both partners; one contact after the other, as a particle may occur more than once.
 template <bool rolls>
@@ -400,72 +222,6 @@ void wall_sweep(WallSweep& sweep) {
     }
   }
 }
-
-SILT_INLINE Quad every(double a) { return Quad{a, a, a, a}; }
-
-template <bool correct, bool drift, bool fluid>
-void integrate_all(Integration& step) {
-  const double h = step.dt;
-  const Quad move = quad(step.move), turn = quad(step.turn), gravity = quad(step.gravity);
-  double largest = 0, check = 0;
-  for (int p = 0; p < step.count; ++p) {
-    Motion& motion = step.motion[p];
-    Quad velocity = quad(motion.velocity), spin = quad(motion.spin);
-    const double inverse_mass = motion.inverse_mass;
-    const double inverse_inertia = 2.5 * inverse_mass / (motion.radius * motion.radius);
-    const Quad force = quad(step.present[p].force), torque = quad(step.present[p].torque);
-    double first = h, second = 0.5 * h * h, corrector = 0.5 * h;
-    Quad impulse{};
-    if constexpr (fluid) {
-      first = step.drag[p].first;
-      second = step.drag[p].second;
-      corrector = step.drag[p].corrector;
-      impulse = quad(step.drag[p].impulse);
-    }
-    if constexpr (correct) {
-      const Quad change = move * (force - quad(step.previous[p].force));
-      velocity += every(corrector * inverse_mass) * change;
-      spin += every(0.5 * h * inverse_inertia) * turn * (torque - quad(step.previous[p].torque));
-      if constexpr (fluid) impulse += every(corrector - 0.5 * h) * change;
-    }
-    if constexpr (drift) {
-      Quad steady = every(inverse_mass) * force + gravity;
-      Quad acceleration = steady;
-      if constexpr (fluid) {
-        steady += quad(step.drag[p].acceleration);
-        acceleration = steady + every(step.drag[p].rate) * (quad(step.drag[p].velocity) - velocity);
-        impulse += every(1 / inverse_mass) * move * (every(first) * acceleration - every(h) * steady);
-      }
-      acceleration *= move;
-      const Quad position = quad(motion.position) + (every(h) * move) * velocity + every(second) * acceleration;
-      velocity += every(first) * acceleration;
-      spin += every(h * inverse_inertia) * turn * torque;
-      *reinterpret_cast<Quad*>(motion.position) = position;
-      const Quad moved = position - quad(step.origin[p]);
-      const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
-      largest = largest > square ? largest : square;
-      check += square;
-      *reinterpret_cast<Quad*>(step.previous[p].force) = Quad{};
-      *reinterpret_cast<Quad*>(step.previous[p].torque) = Quad{};
-    }
-    *reinterpret_cast<Quad*>(motion.velocity) = velocity;
-    *reinterpret_cast<Quad*>(motion.spin) = spin;
-    if constexpr (fluid) *reinterpret_cast<Quad*>(step.drag[p].impulse) = impulse;
-  }
-  step.largest_square = largest;
-  step.check = check;
-}
-
-template <bool fluid>
-SILT_INLINE void choose_pass(Integration& step) {
-  if (step.correct && step.drift)
-    integrate_all<true, true, fluid>(step);
-  else if (step.correct)
-    integrate_all<true, false, fluid>(step);
-  else
-    integrate_all<false, true, fluid>(step);
-}
-void integrate(Integration& step) { step.drag ? choose_pass<true>(step) : choose_pass<false>(step); }
 
 }  // namespace SILT_ISA
 }  // namespace silt

@@ -1,0 +1,107 @@
+// What the pressure correction keeps between steps, and what it tells of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "fluid/pressure_correction/pressure_correction.hpp"
+
+namespace silt {
+
+PressureCorrection::Past PressureCorrection::past() const {
+  double values[4] = {};
+  if (mesh_.nodes > 0) std::copy(past_.begin(), past_.begin() + 4, values);
+  MPI_Allreduce(MPI_IN_PLACE, values, 4, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);  // a rank may have no nodes
+  return {static_cast<int>(values[0]), values[1], values[2], values[3]};
+}
+
+void PressureCorrection::check_balance(double flows, double volume_rate) const {
+  const double scale = boundaries_.throughput() + std::abs(volume_rate);
+  if (std::abs(flows + volume_rate) > 0.01 * scale && scale > 1e-9 * mesh_.volume)
+    throw RunError(
+        fmt::format("the flow cannot be conserved: the boundaries prescribe an outflow of {:.3g} m3/s in all, the "
+                    "fluid's volume changes by {:.3g} m3/s, and no boundary has type pressure",
+                    flows, volume_rate));
+}
+
+void PressureCorrection::set_static_pressure(const Past& before) {
+  set_momentum_terms();
+  if (!porous_ && !has_body_force_) return;
+  set_cell_forces(has_body_force_ ? body_force_.data() : nullptr);
+  assemble_pressure(before);
+  std::vector<double> coefficient(loops_.padded_cells()), sums(3 * mesh_.nodes, 0.0), right(mesh_.nodes);
+  for (std::size_t k = 0; k < coefficient.size(); ++k)
+    coefficient[k] = cell_.void_fraction[k] * cell_.mobility[k] + cell_.stabilisation[k];
+  const std::vector<double> zero(3 * mesh_.nodes, 0.0);
+  loops_.continuity({zero.data(),
+                     zero.data(),
+                     zero.data(),
+                     coefficient.data(),
+                     {cell_.balance[0], cell_.balance[1], cell_.balance[2]}},
+                    sums.data());
+  mesh_.sum_shared(sums.data(), 2);
+  for (int i = 0; i < mesh_.nodes; ++i) {
+    right[i] = sums[2 * i];
+    pressure_[i] = boundaries_.pressure()[i];
+  }
+  pressure_solver_.solve(right, pressure_);
+}
+
+void PressureCorrection::set_pressure_gradient() {
+  std::fill(pressure_gradient_.begin(), pressure_gradient_.end(), 0.0);
+  loops_.effective_gradient(terms_, pressure_gradient_.data());
+  mesh_.sum_shared(pressure_gradient_.data(), 3);
+  for (std::size_t i = 0; i < pressure_gradient_.size(); ++i) pressure_gradient_[i] /= mass_[i / 3];
+}
+
+void PressureCorrection::accept(const Past& before, double dt, std::vector<double>& phi,
+                                const std::vector<double>& divergence) {
+  const int n = mesh_.nodes;
+  const auto& outlet = boundaries_.pressure_boundary();
+  set_pressure_gradient();
+  for (int i = 0; i < 3 * n; ++i) velocity_change_[i] = solution_[i] - velocity_[i];
+  std::swap(old_increment_, increment_);
+  std::swap(increment_, phi);
+  for (int i = 0; i < n; ++i) {
+    const double rotation = scheme_.rotational ? viscosity_ * divergence[i] : 0;
+    const double share = model_a_ ? load_.void_fraction[i] : 1.0;
+    pressure_[i] = outlet[i] >= 0 ? boundaries_.pressure()[i] : pressure_[i] + increment_[i] - rotation / share;
+  }
+  std::swap(old_velocity_, velocity_);
+  velocity_ = solution_;
+  std::swap(old_void_fraction_, void_fraction_);
+  void_fraction_ = load_.void_fraction;
+  std::swap(old_drag_, drag_);
+  drag_ = drag_now_;
+  for (int i = 0; i < n; ++i) {
+    past_[4 * i] = std::min(before.steps + 1, 2);
+    past_[4 * i + 1] = dt, past_[4 * i + 2] = bdf_.c0, past_[4 * i + 3] = before.rate;
+  }
+  renew_ = false;
+}
+
+double PressureCorrection::courant_rate() const {
+  double rate = 0;
+  for (int i = 0; i < mesh_.nodes; ++i) rate = std::max(rate, vec3(&velocity_[3 * i]).norm() / node_size_[i]);
+  return mpi_max(rate);
+}
+
+std::vector<Fluid::StateArray> PressureCorrection::state() {
+  // Matrices and hierarchy are made afresh after a checkpoint, as after a restart: both go on with the same bits.
+  renew_ = true;
+  return {{"velocity", &velocity_, 3},
+          {"old_velocity", &old_velocity_, 3},
+          {"pressure", &pressure_, 1},
+          {"pressure_increment", &increment_, 1},
+          {"old_pressure_increment", &old_increment_, 1},
+          {"last_void_fraction", &void_fraction_, 1},
+          {"old_void_fraction", &old_void_fraction_, 1},
+          {"drag", &drag_, 1},
+          {"old_drag", &old_drag_, 1},
+          {"pressure_gradient", &pressure_gradient_, 3},
+          {"velocity_change", &velocity_change_, 3},
+          {"fluid_steps", &past_, 4}};
+}
+
+}  // namespace silt

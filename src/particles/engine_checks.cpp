@@ -1,0 +1,74 @@
+// What the particle solver finds wrong, and how it says so.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/petsc.hpp"
+#include "particles/engine.hpp"
+
+namespace silt {
+
+void Engine::stop_if_any(const std::string& text) const {
+  int size = 1, rank = 0;
+  MPI_Comm_size(communicator_, &size);
+  MPI_Comm_rank(communicator_, &rank);
+  int first = text.empty() ? size : rank, lowest = first;
+  MPI_Allreduce(&first, &lowest, 1, MPI_INT, MPI_MIN, communicator_);
+  if (lowest == size) return;
+  int length = static_cast<int>(text.size());
+  MPI_Bcast(&length, 1, MPI_INT, lowest, communicator_);
+  std::string told = rank == lowest ? text : std::string(length, ' ');
+  MPI_Bcast(told.data(), length, MPI_CHAR, lowest, communicator_);
+  throw RunError(told);
+}
+
+std::string Engine::describe(const Motion& motion, std::int64_t id) const {
+  return fmt::format(
+      "particle {} at ({:.6g}, {:.6g}, {:.6g}) m, velocity ({:.6g}, {:.6g}, {:.6g}) m/s, spin ({:.6g}, {:.6g}, {:.6g}) "
+      "rad/s, radius "
+      "{:.6g} m, rank {}",
+      id, motion.position[0], motion.position[1], motion.position[2], motion.velocity[0], motion.velocity[1],
+      motion.velocity[2], motion.spin[0], motion.spin[1], motion.spin[2], motion.radius, mpi_rank());
+}
+
+std::string Engine::describe_deepest(int contact) const {
+  const int i = contacts.contact_i()[contact], j = contacts.contact_j()[contact];
+  return fmt::format("{} overlaps another by more than {:g} of the smaller radius (-particles_overlap_limit): {}",
+                     describe(store.motion[i], store.id[i]), options_.overlap_limit,
+                     describe(store.motion[j], store.id[j]));
+}
+
+std::string Engine::find_bad() const {
+  for (int p = 0; p < store.owned; ++p) {
+    const Motion& motion = store.motion[p];
+    double sum = 0;
+    for (int d = 0; d < 3; ++d) sum += motion.position[d] + motion.velocity[d] + motion.spin[d];
+    if (!std::isfinite(sum)) return "not a number: " + describe(motion, store.id[p]);
+  }
+  return "a particle's position is not a number";
+}
+
+void Engine::largest_overlap(ParticleStep& step) const {
+  long long touching = wall_contacts.count();
+  double largest = 0;
+  for (int k = 0; k < contacts.contacts(); ++k) {
+    const int i = contacts.contact_i()[k], j = contacts.contact_j()[k];
+    touching += i < store.owned;  // a pair across ranks is counted by the owner of its first particle
+    const Motion &a = store.motion[i], &b = store.motion[j];
+    double square = 0;
+    for (int d = 0; d < 3; ++d) {
+      double distance = a.position[d] - b.position[d];
+      distance -= periods_.length[d] * std::nearbyint(distance * periods_.inverse[d]);
+      square += distance * distance;
+    }
+    largest = std::max(largest, (a.radius + b.radius - std::sqrt(square)) / std::min(a.radius, b.radius));
+  }
+  for (const WallPoint& point : wall_contacts.points())
+    largest = std::max(largest, 1 - point.distance / store.motion[point.particle].radius);
+  step.contacts = mpi_sum(touching);
+  step.largest_overlap = mpi_max(largest);
+}
+
+}  // namespace silt

@@ -1,0 +1,96 @@
+// The states outside the ordinary step: settling, particles held fixed, snapshots.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/petsc.hpp"
+#include "particles/engine.hpp"
+
+namespace silt {
+
+void Engine::settle(const SettleOptions& options) {
+  if (options.time <= 0 || total == 0) return;
+  settling_ = true;
+  laws_.scale_friction(options.friction_factor);
+  started_ = false;
+  constexpr int chunks = 100;
+  for (int c = 0; c < chunks; ++c) {
+    advance(-options.time * (chunks - c) / chunks, options.time / chunks);
+    double square = 0;
+    for (int p = 0; p < store.owned; ++p) square += vec3(store.motion[p].velocity).squaredNorm();
+    if (total == 0 || mpi_sum(square) < total * options.speed * options.speed) break;
+  }
+  laws_.scale_friction(1);
+  settling_ = false;
+  impulses = {};
+}
+
+ParticleStep Engine::hold(double dt) {
+  if (!started_) start(0);  // they may not overlap more than others
+  Vec3 support = Vec3::Zero();
+  for (int p = 0; p < store.owned; ++p) {
+    FluidAction& action = store.action[p];
+    Motion& motion = store.motion[p];
+    const double mass = 1 / motion.inverse_mass;
+    impulses.kicks -= mass * vec3(motion.velocity);  // a kick on a held particle moves nothing
+    action.held = 1;
+    for (int d = 0; d < 3; ++d) {
+      motion.velocity[d] = motion.spin[d] = 0;
+      const double drag = action.exchange * action.velocity[d] * dt, force = action.force[d] * dt;
+      const double weight = mass * gravity_[d] * dt;
+      action.impulse[d] += drag;
+      impulses.drag[d] += drag;
+      impulses.fluid_force[d] += force;
+      impulses.gravity[d] += weight;
+      support[d] += drag + force + weight;
+    }
+  }
+  impulses.walls -= support;
+  ParticleStep result;
+  result.substeps = 1;
+  result.removed = removed;
+  largest_overlap(result);
+  return result;
+}
+
+std::shared_ptr<const Particles::Snapshot> Engine::snapshot() const {
+  ContactMemory memory = memory_;
+  ParticleRows wall_memory = wall_memory_;
+  if (!detached_) {
+    contacts.gather(store, memory);
+    wall_contacts.gather(store.owned, wall_memory);
+  }
+  const int n = store.owned;
+  return std::make_shared<const Particles::Snapshot>(Particles::Snapshot{
+      n, std::vector<Motion>(store.motion.data(), store.motion.data() + n),
+      std::vector<Load>(store.present.data(), store.present.data() + n),
+      std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n), store.cell, store.action, std::move(memory),
+      std::move(wall_memory), impulses, total, removed, next_id_, wall_total_, started_});
+}
+
+void Engine::restore(const Particles::Snapshot& saved) {
+  store.owned = saved.owned;
+  store.ghosts = 0;
+  store.reserve(saved.owned);
+  std::copy(saved.motion.begin(), saved.motion.end(), store.motion.data());
+  std::copy(saved.present.begin(), saved.present.end(), store.present.data());
+  store.id = saved.id;
+  store.cell = saved.cell;
+  store.action = saved.action;
+  contacts.clear();
+  memory_ = saved.contacts;
+  wall_memory_ = saved.walls;
+  detached_ = true;
+  impulses = saved.impulses;
+  total = saved.total;
+  removed = saved.removed;
+  next_id_ = saved.next_id;
+  wall_total_ = saved.wall_total;
+  started_ = saved.started;
+  departed.clear();
+  fluid_ = false;
+}
+
+}  // namespace silt

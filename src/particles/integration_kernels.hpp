@@ -1,0 +1,77 @@
+// The pass over all particles that moves them; part of sweep_kernels.hpp, compiled once per instruction set.
+#pragma once
+#include "particles/pack.hpp"
+#include "particles/sweep.hpp"
+
+namespace silt {
+namespace SILT_ISA {
+
+SILT_INLINE Quad quad(const double* p) { return *reinterpret_cast<const Quad*>(p); }
+SILT_INLINE Quad every(double a) { return Quad{a, a, a, a}; }
+
+template <bool correct, bool drift, bool fluid>
+void integrate_all(Integration& step) {
+  const double h = step.dt;
+  const Quad move = quad(step.move), turn = quad(step.turn), gravity = quad(step.gravity);
+  double largest = 0, check = 0;
+  for (int p = 0; p < step.count; ++p) {
+    Motion& motion = step.motion[p];
+    Quad velocity = quad(motion.velocity), spin = quad(motion.spin);
+    const double inverse_mass = motion.inverse_mass;
+    const double inverse_inertia = 2.5 * inverse_mass / (motion.radius * motion.radius);
+    const Quad force = quad(step.present[p].force), torque = quad(step.present[p].torque);
+    double first = h, second = 0.5 * h * h, corrector = 0.5 * h;
+    Quad impulse{};
+    if constexpr (fluid) {
+      first = step.drag[p].first;
+      second = step.drag[p].second;
+      corrector = step.drag[p].corrector;
+      impulse = quad(step.drag[p].impulse);
+    }
+    if constexpr (correct) {
+      const Quad change = move * (force - quad(step.previous[p].force));
+      velocity += every(corrector * inverse_mass) * change;
+      spin += every(0.5 * h * inverse_inertia) * turn * (torque - quad(step.previous[p].torque));
+      if constexpr (fluid) impulse += every(corrector - 0.5 * h) * change;
+    }
+    if constexpr (drift) {
+      Quad steady = every(inverse_mass) * force + gravity;
+      Quad acceleration = steady;
+      if constexpr (fluid) {
+        steady += quad(step.drag[p].acceleration);
+        acceleration = steady + every(step.drag[p].rate) * (quad(step.drag[p].velocity) - velocity);
+        impulse += every(1 / inverse_mass) * move * (every(first) * acceleration - every(h) * steady);
+      }
+      acceleration *= move;
+      const Quad position = quad(motion.position) + (every(h) * move) * velocity + every(second) * acceleration;
+      velocity += every(first) * acceleration;
+      spin += every(h * inverse_inertia) * turn * torque;
+      *reinterpret_cast<Quad*>(motion.position) = position;
+      const Quad moved = position - quad(step.origin[p]);
+      const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
+      largest = largest > square ? largest : square;
+      check += square;
+      *reinterpret_cast<Quad*>(step.previous[p].force) = Quad{};
+      *reinterpret_cast<Quad*>(step.previous[p].torque) = Quad{};
+    }
+    *reinterpret_cast<Quad*>(motion.velocity) = velocity;
+    *reinterpret_cast<Quad*>(motion.spin) = spin;
+    if constexpr (fluid) *reinterpret_cast<Quad*>(step.drag[p].impulse) = impulse;
+  }
+  step.largest_square = largest;
+  step.check = check;
+}
+
+template <bool fluid>
+SILT_INLINE void choose_pass(Integration& step) {
+  if (step.correct && step.drift)
+    integrate_all<true, true, fluid>(step);
+  else if (step.correct)
+    integrate_all<true, false, fluid>(step);
+  else
+    integrate_all<false, true, fluid>(step);
+}
+void integrate(Integration& step) { step.drag ? choose_pass<true>(step) : choose_pass<false>(step); }
+
+}  // namespace SILT_ISA
+}  // namespace silt
