@@ -170,8 +170,7 @@ void BoundaryConditions::evaluate(double time, const double* void_fraction) {
   add_flow(time);
 }
 
-Vec3 BoundaryConditions::prescribed(int b, const Vec3& x, const Vec3& normal, double time,
-                                    double void_fraction) const {
+Vec3 BoundaryConditions::prescribed(int b, const Vec3& x, const Vec3& normal, double time, double void_fraction) const {
   const auto& condition = conditions_[b];
   Vec3 value = Vec3::Zero();
   if (condition.type == BoundaryType::velocity)
