@@ -1,5 +1,5 @@
 add_library(silt_flags INTERFACE)
-target_compile_options(silt_flags INTERFACE -Wall -Wextra -Wshadow -Wpedantic -fno-math-errno
+target_compile_options(silt_flags INTERFACE -Wall -Wextra -Wshadow -Wpedantic -fno-math-errno -Wno-psabi
                        $<$<CONFIG:Release>:-O3> $<$<BOOL:${SILT_WERROR}>:-Werror>)
 if(SILT_SANITIZE)
   target_compile_options(silt_flags INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)

@@ -130,6 +130,7 @@ void Simulation::start() {
   diagnostics_->start(output_->directory());
   probes_->start(output_->directory());
   budget_->start(output_->directory(), fluid_.get(), particles_.get());
+  if (particles_) departures_.start(output_->directory());
   progress_->start(now_.time, time_options_.end);
   report();
 }
@@ -212,6 +213,7 @@ void Simulation::report() {
   diagnostics_->sample(now_, quantities);
   probes_->sample(now_, quantities);
   profiles_->sample(now_);
+  departures_.record(now_);
   expectations_->sample(now_.time, quantities);
   if (output_->due(now_.time) || now_.time >= time_options_.end * (1 - 1e-12)) {
     output_->write(now_);

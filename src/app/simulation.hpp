@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/budget.hpp"
+#include "app/departures.hpp"
 #include "app/diagnostics.hpp"
 #include "app/expectations.hpp"
 #include "app/moment.hpp"
@@ -70,6 +71,7 @@ class Simulation {
   std::unique_ptr<Probes> probes_;
   std::unique_ptr<Profiles> profiles_;
   std::unique_ptr<Budget> budget_;
+  Departures departures_;
   std::unique_ptr<Expectations> expectations_;
   std::unique_ptr<Progress> progress_;
 

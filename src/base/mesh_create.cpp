@@ -3,6 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <map>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "base/mesh.hpp"
@@ -102,12 +106,40 @@ DmHandle create_box(const MeshOptions& options) {
   return plex;
 }
 
+/// Gives every facet a label with its physical name. PETSc could do that itself (-dm_plex_gmsh_use_regions), but
+/// in 3.18 it takes the elementary numbers of format 2.2 for physical ones too.
+void name_facets(DM plex, const std::string& file) {
+  PetscInt dimension;
+  SILT_PETSC(DMGetDimension(plex, &dimension));
+  std::map<PetscInt, DMLabel> labels;
+  std::ifstream text(file, std::ios::binary);
+  std::string line;
+  while (std::getline(text, line) && line.rfind("$PhysicalNames", 0) != 0 && line.rfind("$Nodes", 0) != 0) {
+  }
+  while (std::getline(text, line) && line[0] != '$') {
+    std::istringstream row(line);
+    PetscInt of_dimension, tag;
+    std::string name;
+    if (!(row >> of_dimension >> tag >> std::quoted(name)) || of_dimension != dimension - 1) continue;
+    SILT_PETSC(DMCreateLabel(plex, name.c_str()));
+    SILT_PETSC(DMGetLabel(plex, name.c_str(), &labels[tag]));
+  }
+  DMLabel sets;
+  SILT_PETSC(DMGetLabel(plex, "Face Sets", &sets));
+  PetscInt first, last;
+  SILT_PETSC(DMPlexGetHeightStratum(plex, 1, &first, &last));
+  for (PetscInt facet = first; sets && facet < last; ++facet) {
+    PetscInt tag;
+    SILT_PETSC(DMLabelGetValue(sets, facet, &tag));
+    if (const auto found = labels.find(tag); found != labels.end())
+      SILT_PETSC(DMLabelSetValue(found->second, facet, tag));
+  }
+}
+
 DmHandle read_gmsh(const std::string& file) {
   if (file.empty()) throw UserError("option -mesh_file: a mesh of type file needs a Gmsh file");
   if (!std::filesystem::is_regular_file(file))
     throw UserError(fmt::format("option -mesh_file: '{}' does not exist", file));
-  // One label per physical name instead of tag numbers: boundaries are called by name.
-  SILT_PETSC(PetscOptionsSetValue(nullptr, "-dm_plex_gmsh_use_regions", "1"));
   // Only the first rank reads, and where it fails PETSc leaves the others waiting: it tries alone first.
   PetscErrorCode code = 0;
   if (mpi_size() > 1 && mpi_rank() == 0) {
@@ -119,6 +151,7 @@ DmHandle read_gmsh(const std::string& file) {
   if (mpi_any(code != 0))
     throw UserError(
         fmt::format("option -mesh_file: '{}' is not a Gmsh mesh that can be read (formats 2.2 and 4.1)", file));
+  name_facets(plex, file);
   return plex;
 }
 

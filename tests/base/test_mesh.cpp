@@ -1,9 +1,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
 
 #include "base/error.hpp"
 #include "base/mesh.hpp"
 #include "base/nodal_matrix.hpp"
+#include "support/temporary_directory.hpp"
 
 using namespace silt;
 
@@ -138,4 +140,59 @@ TEST_CASE("A mesh option that cannot be is refused with its name") {
   file.type = "file";
   file.file = "no_such.msh";
   CHECK_THROWS_AS(Mesh(file), UserError);
+}
+
+namespace {
+
+/// The unit square of two triangles, its four sides named, in Gmsh's format 2.2 or 4.1.
+std::string square_of_triangles(bool old_format, bool name_all) {
+  std::string text = old_format ? "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" : "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+  text += name_all ? "$PhysicalNames\n3\n1 1 \"inlet\"\n1 2 \"wall\"\n2 3 \"domain\"\n$EndPhysicalNames\n"
+                   : "$PhysicalNames\n2\n1 1 \"inlet\"\n2 3 \"domain\"\n$EndPhysicalNames\n";
+  if (old_format) {
+    text += "$Nodes\n4\n1 0 0 0\n2 2 0 0\n3 2 1 0\n4 0 1 0\n$EndNodes\n";
+    if (name_all)
+      return text +
+             "$Elements\n6\n1 1 2 2 1 1 2\n2 1 2 2 2 2 3\n3 1 2 2 3 3 4\n4 1 2 1 4 4 1\n5 2 2 3 1 1 2 3\n6 2 2 3 1 1 3 "
+             "4\n$EndElements\n";
+    return text + "$Elements\n3\n1 1 2 1 4 4 1\n2 2 2 3 1 1 2 3\n3 2 2 3 1 1 3 4\n$EndElements\n";
+  }
+  return text +
+         "$Entities\n0 2 1 0\n1 0 0 0 0 1 0 1 1 0\n2 0 0 0 2 1 0 1 2 0\n1 0 0 0 2 1 0 1 3 0\n$EndEntities\n"
+         "$Nodes\n1 4 1 4\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n$EndNodes\n"
+         "$Elements\n3 6 1 6\n1 1 1 1\n4 4 1\n1 2 1 3\n1 1 2\n2 2 3\n3 3 4\n2 1 2 2\n5 1 2 3\n6 1 3 4\n$EndElements\n";
+}
+
+}  // namespace
+
+TEST_CASE("A Gmsh file of either format gives the mesh, with its boundaries by name") {
+  const TemporaryDirectory folder;
+  for (bool old_format : {true, false}) {
+    INFO((old_format ? "2.2" : "4.1"));
+    MeshOptions options;
+    options.type = "file";
+    options.file = folder / "square.msh";
+    options.scale = 0.1;
+    std::ofstream(options.file) << square_of_triangles(old_format, true);
+    const Mesh mesh(options);
+    CHECK(mesh.cell == Cell::triangle);
+    CHECK(mesh.total_cells == 2);
+    CHECK(mesh.volume == Approx(0.02).epsilon(1e-12));
+    CHECK(mesh.boundaries.size() == 2);
+    double inlet = 0;
+    for (const auto& facet : mesh.facets) {
+      const auto x = mesh.facet_corners(facet);
+      if (mesh.boundaries[facet.boundary] == "inlet") inlet += (x[1] - x[0]).norm();
+    }
+    CHECK(inlet == Approx(0.1));
+  }
+}
+
+TEST_CASE("A boundary facet without a name is refused") {
+  const TemporaryDirectory folder;
+  MeshOptions options;
+  options.type = "file";
+  options.file = folder / "square.msh";
+  std::ofstream(options.file) << square_of_triangles(true, false);
+  CHECK_THROWS_WITH(Mesh(options), Catch::Contains("inlet") && Catch::Contains("3 facets"));
 }

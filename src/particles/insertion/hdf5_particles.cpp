@@ -70,9 +70,15 @@ std::vector<FileParticle> read_hdf5_particles(const std::string& file, const std
   const Silence silence;
   const Hdf5 handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (handle.id < 0) throw UserError(fmt::format("particle file '{}' is not an HDF5 file that can be read", file));
-  const bool there = H5Lexists(handle.id, "particles", H5P_DEFAULT) > 0;
-  const Hdf5 group(there ? H5Gopen2(handle.id, "particles", H5P_DEFAULT) : -1, H5Gclose);
-  if (group.id < 0) throw UserError(fmt::format("{}: there is no group /particles", file));
+  // An output of a run has the arrays at its top.
+  const bool grouped = H5Lexists(handle.id, "particles", H5P_DEFAULT) > 0;
+  const bool plain = !grouped && H5Lexists(handle.id, "position", H5P_DEFAULT) > 0;
+  const Hdf5 group(grouped ? H5Gopen2(handle.id, "particles", H5P_DEFAULT)
+                   : plain ? H5Gopen2(handle.id, "/", H5P_DEFAULT)
+                           : -1,
+                   H5Gclose);
+  if (group.id < 0)
+    throw UserError(fmt::format("{}: there is neither a group /particles nor a dataset /position", file));
   long long rows = -1;
   const auto position = read_rows(file, group.id, "position", 3, rows, true);
   const auto radius = read_rows(file, group.id, "radius", 1, rows, true);

@@ -41,7 +41,9 @@ struct InsertionOptions {
     option("upper", upper, "m", "highest corner of the region; default: the mesh's");
     option("cylinder", cylinder, {"none", "x", "y", "z"}, "axis of the cylinder that fits into the region's box");
     option("seed", seed, "-", "another seed, another random filling", at_least(0));
-    option("file", file, "CSV (header: x,y,z,diameter|radius[,vx,vy,vz,wx,wy,wz,material]) or HDF5 (/particles)");
+    option("file", file,
+           "CSV (header: x,y,z,diameter|radius[,vx,vy,vz,wx,wy,wz,material]) or HDF5 (an output of a run, "
+           "particles/000010.h5)");
     option("velocity", velocity, "m/s", "velocity at the start (file: unless it has its own)");
     option("spin", spin, "rad/s", "angular velocity at the start (file: unless it has its own)");
     option("spacing", spacing, "m", "distance of lattice sites; default: the diameter", positive);
