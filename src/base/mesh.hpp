@@ -18,6 +18,7 @@ struct MeshOptions {
   std::vector<int> cells = {8, 8, 8};
   std::vector<int> periodic = {0, 0, 0};
   double scale = 1;
+  std::string weight = "1";
   void options(OptionGroup& option);
 };
 
@@ -82,6 +83,7 @@ class Mesh {
 
  private:
   void create(const MeshOptions& options);
+  void weigh(const std::string& weight);
   void extract();
   void extract_boundaries();
 

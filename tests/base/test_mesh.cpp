@@ -196,3 +196,13 @@ TEST_CASE("A boundary facet without a name is refused") {
   std::ofstream(options.file) << square_of_triangles(true, false);
   CHECK_THROWS_WITH(Mesh(options), Catch::Contains("inlet") && Catch::Contains("3 facets"));
 }
+
+TEST_CASE("A weighted partition shares out the cost instead of the cells", "[mpi]") {
+  MeshOptions options = box("hexahedron", {4, 4, 16}, Vec3(1, 1, 4));
+  options.weight = "(z < 1) ? 40 : 1";
+  const Mesh mesh(options);
+  double mine = 0;
+  for (int c = 0; c < mesh.cells; ++c) mine += mesh.cell_coordinates[24 * static_cast<size_t>(c) + 2] < 0.99 ? 40 : 1;
+  CHECK(mesh.total_cells == 256);
+  CHECK(mpi_max(mine) < 1.3 * mpi_sum(mine) / mpi_size());
+}
