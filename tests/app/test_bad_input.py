@@ -158,7 +158,7 @@ def listing(folder):
 
 def attempt(silt, ranks, files, words):
     """(exit code, stdout, stderr, files that appeared) of one run; exit code None when it did not end."""
-    with tempfile.TemporaryDirectory(prefix="silt_bad_input_") as folder:
+    with tempfile.TemporaryDirectory(prefix="silt_bad_input_") as folder, tempfile.TemporaryDirectory(prefix="silt_mpi_") as sockets:
         for name, text in {"case.yaml": CASE, **files}.items():
             os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
             with open(os.path.join(folder, name), "w") as file:
@@ -166,7 +166,9 @@ def attempt(silt, ranks, files, words):
         before = listing(folder)
         command = (["mpiexec", "-n", str(ranks)] if ranks > 1 else []) + [silt, "case.yaml"] + words
         try:
-            done = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120)
+            # Two programs that start at once must not share the folder of Open MPI's sockets.
+            environment = dict(os.environ, OMPI_MCA_orte_tmpdir_base=sockets)
+            done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=120)
         except subprocess.TimeoutExpired:
             return None, "", "", []
         return done.returncode, done.stdout, done.stderr, sorted(set(listing(folder)) - set(before))
