@@ -64,9 +64,19 @@ void Output::write(const Moment& moment) {
   const auto wholes = [](const char* name, const std::vector<std::int64_t>& values) {
     return Dataset{name, 1, std::span<const std::int64_t>(values)};
   };
-  particles_->write(moment.time,
-                    {reals("position", 3, position), reals("velocity", 3, velocity), reals("spin", 3, spin),
-                     reals("radius", 1, radius), wholes("id", id), wholes("material", material), wholes("rank", rank)});
+  std::vector<Dataset> arrays = {reals("position", 3, position),
+                                 reals("velocity", 3, velocity),
+                                 reals("spin", 3, spin),
+                                 reals("radius", 1, radius),
+                                 wholes("id", id),
+                                 wholes("material", material),
+                                 wholes("rank", rank)};
+  const Columns& columns = particles.columns();
+  for (int c = 0; c < columns.count(); ++c) {
+    const auto& [name, width, ghosts, output, start] = columns.request(c);
+    if (output) arrays.push_back({name, width, std::span(columns.values(c), static_cast<size_t>(count) * width)});
+  }
+  particles_->write(moment.time, std::move(arrays));
 }
 
 std::string record_of(const Options& options) {

@@ -109,6 +109,7 @@ void Engine::add(const std::vector<Seed>& seeds) {
     store.id.push_back(next_id_ + static_cast<std::int64_t>(k));
     store.cell.push_back(places[k].cell);
     store.action.emplace_back();
+    store.columns.start(p, seed);
     memory_.rows.append(nullptr, 0);
     wall_memory_.append(nullptr, 0);
     impulses.added += mass * vec3(motion.velocity);
@@ -148,6 +149,7 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
     leaving.cell = one.cell;
     leaving.boundary = one.boundary;
     leaving.action = one.action;
+    leaving.columns = one.columns;
     if (within_step) {
       // It ends the step without contacts at its new place: the corrector for a force that has gone to zero.
       const double z = one.action.exchange * one.motion.inverse_mass * h;

@@ -39,6 +39,7 @@ struct Particles::Snapshot {
   std::vector<std::int64_t> id;
   std::vector<int> cell;
   std::vector<FluidAction> action;
+  std::vector<double> columns;
   ContactMemory contacts;
   ParticleRows walls;
   Impulses impulses;

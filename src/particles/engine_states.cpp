@@ -63,11 +63,12 @@ std::shared_ptr<const Particles::Snapshot> Engine::snapshot() const {
     wall_contacts.gather(store.owned, wall_memory);
   }
   const int n = store.owned;
-  return std::make_shared<const Particles::Snapshot>(Particles::Snapshot{
-      n, std::vector<Motion>(store.motion.data(), store.motion.data() + n),
-      std::vector<Load>(store.present.data(), store.present.data() + n),
-      std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n), store.cell, store.action, std::move(memory),
-      std::move(wall_memory), impulses, total, removed, next_id_, wall_total_, started_});
+  return std::make_shared<const Particles::Snapshot>(
+      Particles::Snapshot{n, std::vector<Motion>(store.motion.data(), store.motion.data() + n),
+                          std::vector<Load>(store.present.data(), store.present.data() + n),
+                          std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n), store.cell, store.action,
+                          store.columns.save(n), std::move(memory), std::move(wall_memory), impulses, total, removed,
+                          next_id_, wall_total_, started_});
 }
 
 void Engine::restore(const Particles::Snapshot& saved) {
@@ -79,6 +80,7 @@ void Engine::restore(const Particles::Snapshot& saved) {
   store.id = saved.id;
   store.cell = saved.cell;
   store.action = saved.action;
+  store.columns.restore(saved.columns, saved.owned);
   contacts.clear();
   memory_ = saved.contacts;
   wall_memory_ = saved.walls;

@@ -71,14 +71,16 @@ void Halo::build(Store& store, const Periods& periods, double cutoff) {
 
   store.ghosts = receive_start_.back();
   store.reserve(store.all());
+  store.columns.clear(store.owned, store.all());
   store.id.resize(store.all());
-  constexpr int width = 13;  // a Motion and the id
+  const int width = 13 + store.columns.ghost_width(true);  // a Motion, the id and the columns
   send_buffer_.resize(send_index_.size() * width);
   receive_buffer_.resize(static_cast<std::size_t>(store.ghosts) * width);
   for (std::size_t k = 0; k < send_index_.size(); ++k) {
     double* record = &send_buffer_[k * width];
     __builtin_memcpy(record, &store.motion[send_index_[k]], sizeof(Motion));
     __builtin_memcpy(record + 12, &store.id[send_index_[k]], sizeof(double));
+    store.columns.gather_ghost(send_index_[k], true, record + 13);
   }
   requests_.clear();
   for (std::size_t n = 0; n < receive_rank_.size(); ++n)
@@ -94,13 +96,14 @@ void Halo::build(Store& store, const Periods& periods, double cutoff) {
     const double* record = &receive_buffer_[static_cast<std::size_t>(k) * width];
     __builtin_memcpy(&store.motion[store.owned + k], record, sizeof(Motion));
     __builtin_memcpy(&store.id[store.owned + k], record + 12, sizeof(double));
+    store.columns.scatter_ghost(store.owned + k, true, record + 13);
     store.present[store.owned + k] = store.previous[store.owned + k] = Load{};
   }
 }
 
 void Halo::forward(Store& store) {
   if (send_rank_.empty() && receive_rank_.empty()) return;
-  constexpr int width = 9;
+  const int width = motion_width_ + store.columns.ghost_width(false);
   requests_.clear();
   for (std::size_t n = 0; n < receive_rank_.size(); ++n)
     MPI_Irecv(&receive_buffer_[static_cast<std::size_t>(receive_start_[n]) * width],
@@ -115,6 +118,7 @@ void Halo::forward(Store& store) {
         record[3 + d] = motion.velocity[d];
         record[6 + d] = motion.spin[d];
       }
+      store.columns.gather_ghost(send_index_[k], false, record + motion_width_);
     }
     MPI_Isend(&send_buffer_[static_cast<std::size_t>(send_start_[n]) * width],
               (send_start_[n + 1] - send_start_[n]) * width, MPI_DOUBLE, send_rank_[n], tag + 1, communicator_,
@@ -129,6 +133,7 @@ void Halo::forward(Store& store) {
       motion.velocity[d] = record[3 + d];
       motion.spin[d] = record[6 + d];
     }
+    store.columns.scatter_ghost(store.owned + k, false, record + motion_width_);
     store.present[store.owned + k] = Load{};  // sums up forces that their owner computes too
   }
 }

@@ -16,12 +16,16 @@ class Halo {
   /// Chooses who needs which particle (nearer than `cutoff` to the box around the other rank's particles, across
   /// periodic sides too) and fetches the ghosts. Collective.
   void build(Store& store, const Periods& periods, double cutoff);
-  /// Refreshes position, velocity and spin of the ghosts. Collective among neighbours.
+  /// Refreshes position, velocity, spin and the columns that change in every step of the ghosts. Collective among
+  /// neighbours.
   void forward(Store& store);
   /// Bytes this rank sends in one forward().
-  std::size_t bytes() const { return send_index_.size() * 9 * sizeof(double); }
+  std::size_t bytes(const Store& store) const {
+    return send_index_.size() * (motion_width_ + store.columns.ghost_width(false)) * sizeof(double);
+  }
 
  private:
+  static constexpr int motion_width_ = 9;  ///< doubles of a ghost in forward(), before its columns
   MPI_Comm communicator_;
   std::vector<int> send_rank_, send_start_, send_index_;  ///< per neighbour a run of send_index_
   std::vector<int> receive_rank_, receive_start_;

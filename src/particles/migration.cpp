@@ -7,7 +7,7 @@
 
 namespace silt {
 
-/// The fixed part of a travelling particle; its rows of contact memory follow it.
+/// The fixed part of a travelling particle; its columns and its rows of contact memory follow it.
 struct Migration::Packet {
   std::int64_t id;
   Motion motion;
@@ -86,6 +86,7 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
   std::vector<std::vector<char>> outgoing(size);
   std::vector<int> staying;
   staying.reserve(store.owned);
+  std::vector<double> row(store.columns.width());
   for (int p = 0; p < store.owned; ++p) {
     const Place place = locator_.find(store.motion[p].position, store.cell[p]);
     if (place.inside()) {
@@ -98,6 +99,8 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
     const Packet packet{store.id[p],   store.motion[p],  carried[p],   store.action[p],
                         store.cell[p], contacts.rows(p), walls.rows(p)};
     put(traveller.bytes, &packet, 1);
+    store.columns.gather(p, row.data());
+    put(traveller.bytes, row.data(), row.size());
     put(traveller.bytes, contacts.row(contacts.start[p]),
         static_cast<std::size_t>(packet.contact_rows) * contacts.width);
     put(traveller.bytes, walls.row(walls.start[p]), static_cast<std::size_t>(packet.wall_rows) * walls.width);
@@ -123,8 +126,9 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
       Packet packet;
       std::memcpy(&packet, incoming.data() + at, sizeof packet);
       const std::size_t bytes =
-          sizeof packet + sizeof(double) * (static_cast<std::size_t>(packet.contact_rows) * contacts.width +
-                                            static_cast<std::size_t>(packet.wall_rows) * walls.width);
+          sizeof packet +
+          sizeof(double) * (row.size() + static_cast<std::size_t>(packet.contact_rows) * contacts.width +
+                            static_cast<std::size_t>(packet.wall_rows) * walls.width);
       const Place place = locator_.find(packet.motion.position);
       if (place.inside()) {
         wrap(locator_, place, packet.motion);
@@ -138,8 +142,10 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
         store.action.push_back(packet.action);
         std::vector<double> rows((bytes - sizeof packet) / sizeof(double));
         std::memcpy(rows.data(), incoming.data() + at + sizeof packet, bytes - sizeof packet);
-        contacts.append(rows.data(), packet.contact_rows);
-        walls.append(rows.data() + static_cast<std::size_t>(packet.contact_rows) * contacts.width, packet.wall_rows);
+        store.columns.scatter(p, rows.data());
+        contacts.append(rows.data() + row.size(), packet.contact_rows);
+        walls.append(rows.data() + row.size() + static_cast<std::size_t>(packet.contact_rows) * contacts.width,
+                     packet.wall_rows);
       } else {
         vanished |= settled;
         Traveller traveller;
@@ -161,8 +167,9 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
     if (places[k].state == Place::State::boundary) {
       const Packet packet = lost_sight[k].packet();
       const Place& first = lost_sight[k].place;
+      std::memcpy(row.data(), lost_sight[k].bytes.data() + sizeof packet, row.size() * sizeof(double));
       const int boundary = first.state == Place::State::boundary ? first.boundary : places[k].boundary;
-      gone.push_back({packet.id, packet.motion, packet.carried, packet.action, packet.cell, boundary});
+      gone.push_back({packet.id, packet.motion, packet.carried, packet.action, packet.cell, boundary, row});
     } else {
       const int rank = places[k].inside() ? mpi_rank() : places[k].rank;
       put(outgoing[rank], lost_sight[k].bytes.data(), lost_sight[k].bytes.size());

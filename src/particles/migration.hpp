@@ -15,8 +15,9 @@ struct Gone {
   Motion motion;
   Load carried;  ///< the contact load it had (Store::reorder)
   FluidAction action;
-  int cell;      ///< last local cell
-  int boundary;  ///< index into Mesh::boundaries: where it passed, as far as can be told
+  int cell;                     ///< last local cell
+  int boundary;                 ///< index into Mesh::boundaries: where it passed, as far as can be told
+  std::vector<double> columns;  ///< Columns::gather of its row
 };
 
 /// Brings every particle to the rank whose cells contain its centre, with its fluid action and contact memories, and

@@ -41,6 +41,8 @@ double Particles::volume(int i) const {
   const double r = radius(i);
   return 4.0 / 3.0 * std::numbers::pi * r * r * r;
 }
+Columns& Particles::columns() { return impl_->store.columns; }
+const Columns& Particles::columns() const { return impl_->store.columns; }
 int Particles::material(int i) const { return static_cast<int>(impl_->store.motion[i].material); }
 int Particles::cell(int i) const { return impl_->store.cell[i]; }
 FluidAction& Particles::fluid_action(int i) { return impl_->store.action[i]; }

@@ -7,6 +7,7 @@
 #include "base/mesh.hpp"
 #include "base/options.hpp"
 #include "base/vector.hpp"
+#include "particles/columns.hpp"
 
 namespace silt {
 
@@ -37,6 +38,12 @@ struct Seed {
   Vec3 position = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero();
   double radius = 0;  ///< m
   int material = 0;   ///< index into Materials
+  /// Values of columns that do not start as their models say; a name that no model asked for is ignored.
+  struct Value {
+    std::string name;
+    std::vector<double> row;
+  };
+  std::vector<Value> columns = {};
 };
 
 /// A particle that left the domain through an outlet (or was lost) during the last advance(), with its last state.
@@ -44,9 +51,10 @@ struct Departed {
   std::int64_t id = 0;
   Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
   double mass = 0;
-  int cell = -1;       ///< the last local cell that contained it
-  int boundary = -1;   ///< index into Mesh::boundaries
-  FluidAction action;  ///< with the drag impulse received in this advance
+  int cell = -1;                ///< the last local cell that contained it
+  int boundary = -1;            ///< index into Mesh::boundaries
+  FluidAction action;           ///< with the drag impulse received in this advance
+  std::vector<double> columns;  ///< Columns::gather of its row
 };
 
 class Materials;
@@ -80,6 +88,9 @@ class Particles {
   int material(int i) const;
   int cell(int i) const;  ///< local cell that contains the centre
   FluidAction& fluid_action(int i);
+  /// What models let the particles carry besides; a model registers its own before the first advance().
+  Columns& columns();
+  const Columns& columns() const;
 
   /// The whole state, to return to after a fluid step that failed. restore() must be followed by an advance(). Local /
   /// collective.

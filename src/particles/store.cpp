@@ -8,9 +8,11 @@ void Store::reserve(int count) {
   present.reserve(n);
   previous.reserve(n);
   origin.reserve(n);
+  columns.reserve(count);
 }
 
 void Store::place_dummies() {
+  columns.clear(dummy(), dummy() + 2);
   // Two points without size, a metre apart: they never touch and stay finite.
   for (int k = 0; k < 2; ++k) {
     Motion& motion_k = motion[dummy() + k];
@@ -44,6 +46,7 @@ void Store::reorder(const std::vector<int>& order, Aligned<Load>& carried) {
   id.swap(new_id);
   cell.swap(new_cell);
   action.swap(new_action);
+  columns.reorder(order);
 }
 
 }  // namespace silt

@@ -25,6 +25,7 @@ struct Store {
   std::vector<std::int64_t> id;  ///< [owned + ghosts]
   std::vector<int> cell;         ///< [owned]
   std::vector<FluidAction> action;  ///< [owned]
+  Columns columns;                  ///< [owned + ghosts] what models ask for
 
   int all() const { return owned + ghosts; }
   int dummy() const { return owned + ghosts; }

@@ -108,7 +108,7 @@ TEST_CASE(
   bed.set("fluid_density", "2")
       .set("fluid_viscosity", fmt::format("{:.15g}", mu))
       .set("fluid_initial_velocity", "0.1, 0.05, 0");
-  bed.set("drag_type", "stokes").set("fluid_order", "1");
+  bed.set("drag_type", "stokes_cunningham").set("fluid_order", "1");
   bed.create(lattice({8, 8, 8}, side / 8, d));
   const double solid = bed.particles->total_mass(), volume = 512 * pi / 6 * d * d * d,
                fluid = 2 * (side * side * side - volume);
@@ -135,7 +135,7 @@ TEST_CASE(
   Bed bed;
   bed.set("mesh_upper", fmt::format("{0}, {0}, {1}", 4 * spacing, height)).set("mesh_cells", "2, 2, 3");
   bed.set("material_bead_density", "1000").set("material_bead_young_modulus", "1e7").set("particles_speed", "0.01");
-  bed.set("fluid_density", "1").set("fluid_viscosity", "1").set("drag_type", "stokes");
+  bed.set("fluid_density", "1").set("fluid_viscosity", "1").set("drag_type", "stokes_cunningham");
   for (const char* side : {"x_min", "x_max", "y_min", "y_max"}) bed.set(fmt::format("boundary_{}_type", side), "slip");
   bed.set("boundary_z_min_type", "pressure").set("boundary_z_min_particles", "wall");
   bed.set("boundary_z_max_type", "pressure").set("boundary_z_max_particles", "wall");
