@@ -67,8 +67,8 @@ Probes::Probes(const Mesh& mesh, Options& options, bool with_fluid) {
   for (const auto& name : line_names) {
     LineOptions line;
     options.read("line_" + name, line);
-    std::vector<Vec3> points;
-    for (int k = 0; k < line.points; ++k) points.push_back(line.from + (line.to - line.from) * k / (line.points - 1.0));
+    std::vector<Vec3> points(line.points);
+    for (int k = 0; k < line.points; ++k) points[k] = line.from + (line.to - line.from) * k / (line.points - 1.0);
     lines_.push_back({name, FluidPoints(mesh, *locator_, std::move(points), "-line_" + name), {}, {}});
   }
 }

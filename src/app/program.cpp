@@ -99,6 +99,7 @@ int answer(const std::vector<std::string>& arguments) {
 int run_program(const std::vector<std::string>& arguments) {
   std::vector<std::string> words = for_petsc(arguments);
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (auto& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   PetscSession session(static_cast<int>(words.size()), argv.data());

@@ -1,0 +1,71 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <initializer_list>
+
+#include "particles/tangential/tangential_load.hpp"
+
+using namespace silt;
+
+namespace {
+
+constexpr double mass = 2e-6, stiffness = 50;
+const double frequency = std::sqrt(3.5 * stiffness / mass);  // rad/s
+
+/// A sphere that cannot roll away, pushed aside on a wall with friction, without dashpot: the velocity of the contact
+/// point obeys dV/dt = 7/2 F/m, integrated as the engine does. Returns the energy of the oscillation after `radians`,
+/// as a share of that at the start.
+double energy_left(double step, double radians) {
+  Contact<double> contact{};
+  contact.normal[2] = 1;
+  contact.effective_mass = mass;
+  double velocity = 0.01, acceleration = 0, spring[3] = {}, force[3];
+  // The first half step of the displacement, before the first reading.
+  spring[0] = 0.5 * step * velocity;
+  const double start = velocity * velocity;
+  double energy = 0, displacement = 0;
+  for (int n = 0; n < radians / (frequency * step); ++n) {
+    contact.slip[0] = velocity + step * acceleration;  // predicted for the step's end
+    limited_spring_dashpot(contact, 1.0, 1e9, stiffness, 0.0, step, spring, force);
+    const double next = 3.5 * force[0] / mass;
+    velocity += 0.5 * step * (acceleration + next);
+    acceleration = next;
+    displacement = force[0] / stiffness;
+    energy = velocity * velocity + frequency * frequency * displacement * displacement;
+  }
+  return energy / start;
+}
+
+}  // namespace
+
+TEST_CASE("a tangential spring without dashpot never gains energy and loses it to third order in the step") {
+  double before = 0;
+  for (const double angle : {0.2, 0.1, 0.05}) {
+    const double lost = 1 - energy_left(angle / frequency, 100);
+    INFO("w dt = " << angle << ": lost " << lost);
+    CHECK(lost > 0);
+    CHECK(lost < 100 * angle * angle * angle);
+    if (before > 0) CHECK(std::log2(before / lost) > 2.5);
+    before = lost;
+  }
+}
+
+TEST_CASE("a sliding contact carries mu F_n, and its spring is what that force needs") {
+  Contact<double> contact{};
+  contact.normal[2] = 1;
+  contact.effective_mass = mass;
+  contact.slip[1] = 0.2;
+  const double step = 1e-6, friction = 0.3, normal = 2e-3;
+  double spring[3] = {}, force[3];
+  for (int n = 0; n < 200; ++n) limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, step, spring, force);
+  CHECK(force[1] == Approx(-friction * normal).epsilon(1e-12));
+  CHECK(spring[1] == Approx(friction * normal / stiffness).epsilon(0.02));
+  // It turns back at once: the force falls by k V dt in a step.
+  contact.slip[1] = -0.2;
+  double last = force[1];
+  limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, step, spring, force);
+  limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, step, spring, force);
+  const double middle = force[1];
+  limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, step, spring, force);
+  CHECK(middle > last);
+  CHECK(force[1] - middle == Approx(stiffness * 0.2 * step).epsilon(1e-6));
+}
