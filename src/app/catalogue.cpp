@@ -6,6 +6,7 @@
 #include "app/simulation.hpp"
 #include "coupling/drag/drag_models.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
+#include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/monolithic.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
@@ -40,6 +41,7 @@ Options everything() {
   declare<TimeOptions>(options, "time");
   declare<MeshOptions>(options, "mesh");
   declare<FluidOptions>(options, "fluid");
+  declare<EnergyOptions>(options, "fluid");
   declare<PressureCorrectionOptions>(options, "fluid");
   declare<MonolithicOptions>(options, "fluid");
   declare<BoundaryOptions>(options, "boundary_<name>");

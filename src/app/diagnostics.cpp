@@ -44,6 +44,8 @@ const std::vector<std::string> particle_columns = {"particles",
                                                    "particle_velocity_x",
                                                    "particle_velocity_y",
                                                    "particle_velocity_z"};
+const std::vector<std::string> heat_columns = {"fluid_heat", "energy_iterations", "least_temperature",
+                                               "mean_temperature", "largest_temperature"};
 const std::vector<std::string> flow_columns = {"volume_flow", "pressure", "force_x", "force_y", "force_z"};
 
 constexpr int height_bins = 1024;
@@ -61,13 +63,16 @@ double facet_area(const Mesh& mesh, const BoundaryFacet& facet) {
 
 }  // namespace
 
-Diagnostics::Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity, bool with_fluid, bool with_particles)
+Diagnostics::Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity, const Fluid* fluid,
+                         bool with_particles)
     : mesh_(mesh),
       up_(gravity.norm() > 0 ? Vec3(-gravity.normalized()) : Vec3::Unit(mesh.dimension - 1)),
-      with_fluid_(with_fluid),
+      with_fluid_(fluid != nullptr),
+      with_heat_(fluid && !fluid->temperature().empty()),
       with_particles_(with_particles),
       columns_(step_columns) {
-  if (with_fluid) append(columns_, fluid_columns);
+  if (with_fluid_) append(columns_, fluid_columns);
+  if (with_heat_) append(columns_, heat_columns);
   if (with_particles) append(columns_, particle_columns);
   bottom_ = 0;
   double top = 0;
@@ -76,7 +81,7 @@ Diagnostics::Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity
     top += std::max(up_[d] * mesh.lower[d], up_[d] * mesh.upper[d]);
   }
   height_ = top - bottom_;
-  if (!with_fluid) return;
+  if (!with_fluid_) return;
   mass_ = lumped_mass(mesh);
   area_.assign(mesh.boundaries.size(), 0.0);
   for (const auto& facet : mesh.facets) area_[facet.boundary] += facet_area(mesh, facet);
@@ -84,6 +89,7 @@ Diagnostics::Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity
   boundary_columns_ = {"time"};
   for (const auto& name : mesh.boundaries) {
     for (const auto& column : flow_columns) boundary_columns_.push_back(name + "." + column);
+    if (with_heat_) boundary_columns_.push_back(name + ".heat_flow");
     const std::string type = options.find("boundary_" + name + "_type").value_or("");
     role_.push_back(type == "velocity" || type == "mass_flow" ? 1 : type == "pressure" ? -1 : 0);
   }
@@ -145,6 +151,7 @@ void Diagnostics::measure_fluid(const Moment& moment, std::vector<double>& row, 
     (role_[b] > 0 ? given_area : outlet_area) += role_[b] == 0 ? 0 : area_[b];
     for (double value : {flow.volume_flow, flow.mean_pressure, flow.force[0], flow.force[1], flow.force[2]})
       flows.push_back(value);
+    if (with_heat_) flows.push_back(flow.heat_flow);
   }
   const double drop = given_area > 0 && outlet_area > 0 ? given / given_area - outlet / outlet_area
                       : boundary.empty()                ? 0
@@ -154,6 +161,17 @@ void Diagnostics::measure_fluid(const Moment& moment, std::vector<double>& row, 
                        static_cast<double>(step.pressure_iterations), static_cast<double>(step.newton_iterations),
                        step.mass_residual, drop, in, out, fluid.density() * sum[0], std::sqrt(mpi_max(fastest)),
                        mpi_min(least), sum[1] / mesh_.volume, sum[2] / sum[1], sum[3] / sum[1], sum[4] / sum[1]})
+    row.push_back(value);
+  if (!with_heat_) return;
+  const auto T = fluid.temperature();
+  double low_T = infinity, mean = 0, high_T = -infinity;
+  for (int i = 0; i < mesh_.owned_nodes; ++i) {
+    low_T = std::min(low_T, T[i]);
+    high_T = std::max(high_T, T[i]);
+    mean += mass_[i] * alpha[i] * T[i];
+  }
+  for (double value : {step.heat, static_cast<double>(step.energy_iterations), mpi_min(low_T), mpi_sum(mean) / sum[1],
+                       mpi_max(high_T)})
     row.push_back(value);
 }
 

@@ -21,7 +21,7 @@ namespace silt {
 ///   It is the pressure the fluid is solved for: without the static head rho g.x unless `-fluid_hydrostatic yes`.
 class Diagnostics {
  public:
-  Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity, bool with_fluid, bool with_particles);
+  Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity, const Fluid* fluid, bool with_particles);
   /// Opens the files. Collective.
   void start(const OutputDirectory& directory);
   /// Measures, writes a row, and adds every column to `quantities`. Collective.
@@ -36,7 +36,7 @@ class Diagnostics {
   const Mesh& mesh_;
   Vec3 up_;
   double bottom_, height_;
-  bool with_fluid_, with_particles_;
+  bool with_fluid_, with_heat_, with_particles_;
   std::vector<std::string> columns_, boundary_columns_;
   std::vector<int> role_;            ///< of each boundary: 1 fluid is given, -1 pressure is given, 0 neither
   std::vector<double> area_, mass_;  ///< area of each boundary; volume that belongs to each node

@@ -40,6 +40,7 @@ void Output::write(const Moment& moment) {
   if (fluid_) {
     std::vector<NodeField> fields = {{"velocity", 3, moment.fluid->velocity()},
                                      {"pressure", 1, moment.fluid->pressure()}};
+    for (const auto& scalar : moment.fluid->scalars()) fields.push_back({scalar.name, 1, scalar.values});
     if (with_particles_) fields.push_back({"void_fraction", 1, moment.fluid->load().void_fraction});
     fluid_->write(moment.time, fields);
   }

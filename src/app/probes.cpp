@@ -16,8 +16,9 @@ void LineOptions::options(OptionGroup& option) {
   option("points", points, "-", "number of points, ends included", at_least(2));
 }
 
-const std::vector<std::string>& FluidPoints::columns() {
-  static const std::vector<std::string> names = {"velocity_x", "velocity_y", "velocity_z", "pressure", "void_fraction"};
+std::vector<std::string> FluidPoints::columns(const Fluid& fluid) {
+  std::vector<std::string> names = {"velocity_x", "velocity_y", "velocity_z", "pressure", "void_fraction"};
+  for (const auto& scalar : fluid.scalars()) names.push_back(scalar.name);
   return names;
 }
 
@@ -33,7 +34,8 @@ FluidPoints::FluidPoints(const Mesh& mesh, const Locator& locator, std::vector<V
 }
 
 std::vector<double> FluidPoints::sample(const Fluid& fluid) const {
-  const size_t width = columns().size();
+  const auto scalars = fluid.scalars();
+  const size_t width = 5 + scalars.size();
   const auto u = fluid.velocity(), p = fluid.pressure();
   const auto& alpha = fluid.load().void_fraction;
   std::vector<double> values(width * points_.size(), 0.0);
@@ -47,17 +49,19 @@ std::vector<double> FluidPoints::sample(const Fluid& fluid) const {
       for (size_t d = 0; d < 3; ++d) value[d] += N[a] * u[3 * static_cast<size_t>(node[a]) + d];
       value[3] += N[a] * p[node[a]];
       value[4] += N[a] * alpha[node[a]];
+      for (size_t s = 0; s < scalars.size(); ++s) value[5 + s] += N[a] * scalars[s].values[node[a]];
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   return values;
 }
 
-Probes::Probes(const Mesh& mesh, Options& options, bool with_fluid) {
+Probes::Probes(const Mesh& mesh, Options& options, const Fluid* fluid) {
   const auto probe_names = options.names("probe", Options::declared<ProbeOptions>());
   const auto line_names = options.names("line", Options::declared<LineOptions>());
   if (probe_names.empty() && line_names.empty()) return;
-  if (!with_fluid) throw UserError("-probe_... and -line_... record the fluid, and -fluid_type is none");
+  if (!fluid) throw UserError("-probe_... and -line_... record the fluid, and -fluid_type is none");
+  columns_ = FluidPoints::columns(*fluid);
   locator_ = std::make_unique<Locator>(mesh);
   for (const auto& name : probe_names) {
     ProbeOptions probe;
@@ -75,8 +79,8 @@ Probes::Probes(const Mesh& mesh, Options& options, bool with_fluid) {
 
 void Probes::start(const OutputDirectory& directory) {
   std::vector<std::string> head = {"time"}, line_head = {"time", "distance", "x", "y", "z"};
-  head.insert(head.end(), FluidPoints::columns().begin(), FluidPoints::columns().end());
-  line_head.insert(line_head.end(), FluidPoints::columns().begin(), FluidPoints::columns().end());
+  head.insert(head.end(), columns_.begin(), columns_.end());
+  line_head.insert(line_head.end(), columns_.begin(), columns_.end());
   for (auto& probe : probes_) probe.table = CsvWriter(directory.path("probe_" + probe.name + ".csv"), head);
   for (auto& line : lines_) line.table = CsvWriter(directory.path("line_" + line.name + ".csv"), line_head);
 }
@@ -84,8 +88,7 @@ void Probes::start(const OutputDirectory& directory) {
 void Probes::sample(const Moment& moment, Quantities& quantities) {
   for (auto& probe : probes_) {
     probe.last = probe.points.sample(*moment.fluid);
-    for (size_t c = 0; c < probe.last.size(); ++c)
-      quantities.set(probe.name + "." + FluidPoints::columns()[c], probe.last[c]);
+    for (size_t c = 0; c < probe.last.size(); ++c) quantities.set(probe.name + "." + columns_[c], probe.last[c]);
     std::vector<double> row = {moment.time};
     row.insert(row.end(), probe.last.begin(), probe.last.end());
     probe.table.row(row);
@@ -93,7 +96,7 @@ void Probes::sample(const Moment& moment, Quantities& quantities) {
 }
 
 void Probes::write_lines(const Moment& moment) {
-  const size_t width = FluidPoints::columns().size();
+  const size_t width = columns_.size();
   for (auto& line : lines_) {
     line.last = line.points.sample(*moment.fluid);
     const auto& points = line.points.points();
@@ -110,19 +113,19 @@ void Probes::write_lines(const Moment& moment) {
 std::vector<std::string> Probes::columns() const {
   std::vector<std::string> names;
   for (const auto& probe : probes_)
-    for (const auto& column : FluidPoints::columns()) names.push_back(probe.name + "." + column);
+    for (const auto& column : columns_) names.push_back(probe.name + "." + column);
   return names;
 }
 
 std::vector<std::string> Probes::line_columns() const {
   std::vector<std::string> names;
   for (const auto& line : lines_)
-    for (const auto& column : FluidPoints::columns()) names.push_back(line.name + "." + column);
+    for (const auto& column : columns_) names.push_back(line.name + "." + column);
   return names;
 }
 
 std::vector<double> Probes::line(const std::string& column) const {
-  const auto& names = FluidPoints::columns();
+  const auto& names = columns_;
   std::vector<double> values;
   for (const auto& item : lines_)
     for (size_t c = 0; c < names.size(); ++c)

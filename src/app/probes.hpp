@@ -23,13 +23,14 @@ struct LineOptions {
   void options(OptionGroup& option);
 };
 
-/// The fluid at fixed points: velocity, pressure and void fraction by the mesh's own shape functions.
+/// The fluid at fixed points: velocity, pressure, void fraction and what else the fluid has, by the mesh's own shape
+/// functions.
 class FluidPoints {
  public:
-  static const std::vector<std::string>& columns();
+  static std::vector<std::string> columns(const Fluid& fluid);
   /// Throws UserError naming `owner` when a point lies outside the mesh. Collective.
   FluidPoints(const Mesh& mesh, const Locator& locator, std::vector<Vec3> points, const std::string& owner);
-  /// columns().size() values a point, on every rank. Collective.
+  /// columns(fluid).size() values a point, on every rank. Collective.
   std::vector<double> sample(const Fluid& fluid) const;
   const std::vector<Vec3>& points() const { return points_; }
 
@@ -42,7 +43,8 @@ class FluidPoints {
 /// All probes and lines of a run: `probe_<name>.csv`, a row a step; `line_<name>.csv`, a row a point and output.
 class Probes {
  public:
-  Probes(const Mesh& mesh, Options& options, bool with_fluid);
+  /// `fluid` is null in a run without one.
+  Probes(const Mesh& mesh, Options& options, const Fluid* fluid);
   /// Opens the files. Collective.
   void start(const OutputDirectory& directory);
   /// Writes a row for every probe and adds `<probe>.<column>` to `quantities`. Collective.
@@ -63,6 +65,7 @@ class Probes {
     CsvWriter table;
     std::vector<double> last;
   };
+  std::vector<std::string> columns_;
   std::unique_ptr<Locator> locator_;
   std::vector<Item> probes_, lines_;
 };

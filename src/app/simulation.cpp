@@ -72,8 +72,8 @@ Simulation::Simulation(Options& options) : options_(options) {
     coupling_ = std::make_unique<Coupling>(*mesh_, *particles_, *fluid_, options, case_.gravity);
   const bool flow = fluid_ != nullptr, grains = particles_ != nullptr;
   output_ = std::make_unique<Output>(*mesh_, options, flow, grains);
-  diagnostics_ = std::make_unique<Diagnostics>(*mesh_, options, case_.gravity, flow, grains);
-  probes_ = std::make_unique<Probes>(*mesh_, options, flow);
+  diagnostics_ = std::make_unique<Diagnostics>(*mesh_, options, case_.gravity, fluid_.get(), grains);
+  probes_ = std::make_unique<Probes>(*mesh_, options, fluid_.get());
   profiles_ = std::make_unique<Profiles>(*mesh_, options, grains);
   budget_ = std::make_unique<Budget>(options, flow, grains);
   auto through_time = diagnostics_->columns(), along_lines = probes_->line_columns();

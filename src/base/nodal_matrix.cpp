@@ -137,6 +137,20 @@ std::vector<double> lumped_mass(const Mesh& mesh) {
   return mass;
 }
 
+std::vector<double> shortest_edges(const Mesh& mesh) {
+  std::vector<double> result(mesh.cells, infinity);
+  const bool simplex = mesh.cell == Cell::triangle || mesh.cell == Cell::tetrahedron;
+  const int n = mesh.nodes_per_cell;
+  for (int c = 0; c < mesh.cells; ++c) {
+    const double* x = &mesh.cell_coordinates[3 * static_cast<size_t>(c) * n];
+    for (int a = 0; a < n; ++a)
+      for (int b = a + 1; b < n; ++b)  // tensor cells: the numbers of an edge's ends differ in one bit
+        if (simplex || ((a ^ b) & ((a ^ b) - 1)) == 0)
+          result[c] = std::min(result[c], (vec3(x + 3 * a) - vec3(x + 3 * b)).norm());
+  }
+  return result;
+}
+
 void add_stiffness(NodalMatrix& matrix, double factor) {
   const Mesh& mesh = matrix.graph.mesh;
   const Quadrature rule = quadrature(mesh.cell, 2);

@@ -38,6 +38,8 @@ class NodalMatrix {
 
 /// Row sums of the mass matrix: the volume that belongs to each node, summed over ranks. [nodes] m3.
 std::vector<double> lumped_mass(const Mesh& mesh);
+/// Shortest edge of each local cell, m.
+std::vector<double> shortest_edges(const Mesh& mesh);
 /// Adds the stiffness matrix int grad N_a . grad N_b to `matrix`.
 void add_stiffness(NodalMatrix& matrix, double factor = 1);
 

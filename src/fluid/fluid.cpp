@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/monolithic.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
@@ -20,9 +21,17 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
                                 options.origin("fluid_element"), *options.find("fluid_element")));
   auto made = fluid.scheme == "pressure_correction" ? make_pressure_correction(mesh, options, fluid, gravity)
                                                     : make_monolithic(mesh, options, fluid, gravity);
+  if (fluid.energy) {
+    EnergyOptions energy;
+    options.read("fluid", energy);
+    made->heat_capacity_ = energy.heat_capacity;
+    made->conductivity_ = energy.conductivity;
+  }
   made->description_ = fmt::format("{}, {} kg/m3, {} Pa s; {}, BDF{}, model {}", fluid.type, fluid.density,
                                    fluid.viscosity, fluid.scheme, fluid.order, fluid.model);
-  if (made->unknowns_ == 0) made->unknowns_ = (mesh.dimension + 1) * mesh.total_nodes;
+  if (fluid.energy)
+    made->description_ += fmt::format("; energy, {} J/(kg K), {} W/(m K)", made->heat_capacity_, made->conductivity_);
+  if (made->unknowns_ == 0) made->unknowns_ = (mesh.dimension + (fluid.energy ? 2 : 1)) * mesh.total_nodes;
   return made;
 }
 

@@ -15,19 +15,27 @@ struct ParticleLoad {
   std::vector<double> void_fraction;       ///< [nodes] alpha at the end of the step
   std::vector<double> void_fraction_rate;  ///< [nodes] 1/s, (alpha^{n+1} - alpha^n)/dt
   std::vector<double> force;  ///< [nodes][3] N, load vector: what the particles push the fluid with (-sum_p w_i I_p/dt)
-  std::vector<double> response;  ///< [nodes] kg/s: sum_p w_i K_p; the fluid feels -response (u^{n+1} - u^n)
+  std::vector<double> response;       ///< [nodes] kg/s: sum_p w_i K_p; the fluid feels -response (u^{n+1} - u^n)
+  std::vector<double> heat;           ///< [nodes] W, load vector: heat that the particles give the fluid
+  std::vector<double> heat_response;  ///< [nodes] W/K: the fluid gets heat - heat_response (T^{n+1} - T^n)
   explicit ParticleLoad(int nodes = 0)
-      : void_fraction(nodes, 1.0), void_fraction_rate(nodes, 0.0), force(3 * nodes, 0.0), response(nodes, 0.0) {}
+      : void_fraction(nodes, 1.0),
+        void_fraction_rate(nodes, 0.0),
+        force(3 * nodes, 0.0),
+        response(nodes, 0.0),
+        heat(nodes, 0.0),
+        heat_response(nodes, 0.0) {}
 };
 
 /// What one fluid step took and left, for the progress line, the diagnostics and the ledger.
 struct FluidStep {
-  int velocity_iterations = 0, pressure_iterations = 0, newton_iterations = 0;
+  int velocity_iterations = 0, pressure_iterations = 0, newton_iterations = 0, energy_iterations = 0;
   double courant = 0;        ///< largest |u| dt / h
   double mass_residual = 0;  ///< m3/s: inflow - outflow - d/dt int alpha, relative to the inflow (or to 1 when closed)
   Vec3 momentum = Vec3::Zero();  ///< kg m/s, int alpha rho u at the end of the step
   Vec3 boundary_force =
       Vec3::Zero();  ///< N, pressure, viscous and convective momentum flux through the boundary (into the fluid)
+  double heat = 0;   ///< J, at the end of the step, counted from the reference temperature
 };
 
 /// Volume flow and force per named boundary.
@@ -35,6 +43,7 @@ struct BoundaryFlow {
   double volume_flow = 0;     ///< m3/s, int alpha u.n, positive out
   double mean_pressure = 0;   ///< Pa
   Vec3 force = Vec3::Zero();  ///< N, force of the fluid on the boundary
+  double heat_flow = 0;       ///< W, heat that leaves, conducted and carried
 };
 
 /// The carrier phase on a mesh. Implementations: PressureCorrection, Monolithic. The flow never sees a particle.
@@ -49,6 +58,9 @@ class Fluid {
   const ParticleLoad& load() const { return load_; }
   double density() const { return density_; }
   double viscosity() const { return viscosity_; }
+  /// J/(kg K) and W/(m K); 0 when no energy equation is solved.
+  double heat_capacity() const { return heat_capacity_; }
+  double conductivity() const { return conductivity_; }
   /// True for the volume-averaged form A (pressure gradient times alpha), false for form B.
   bool model_a() const { return model_a_; }
   /// True when pressure() is the pressure less the static head rho g.x (the default): gravity then does not enter the
@@ -76,6 +88,18 @@ class Fluid {
   /// - alpha_h) grad p_h with the lumped mass M, so that the pressure force on the particles balances the fluid's to
   /// round-off.
   virtual std::span<const double> pressure_gradient() const = 0;
+  /// [nodes] K; empty when no energy equation is solved.
+  virtual std::span<const double> temperature() const { return {}; }
+  /// [nodes] K, the change of the temperature that entered the particles' heat response in the last step.
+  virtual std::span<const double> temperature_change() const { return {}; }
+  /// What there is at the nodes beside velocity, pressure and void fraction: temperature, density, ...
+  struct Scalar {
+    std::string name;
+    std::span<const double> values;  ///< [nodes]
+  };
+  virtual std::vector<Scalar> scalars() const {
+    return temperature().empty() ? std::vector<Scalar>{} : std::vector<Scalar>{{"temperature", temperature()}};
+  }
   /// Flow and force per boundary, in the order of Mesh::boundaries. Collective.
   virtual std::vector<BoundaryFlow> boundary_flow() const = 0;
 
@@ -93,7 +117,7 @@ class Fluid {
 
  protected:
   ParticleLoad load_;
-  double density_ = 0, viscosity_ = 0;
+  double density_ = 0, viscosity_ = 0, heat_capacity_ = 0, conductivity_ = 0;
   bool model_a_ = true;
   bool reduced_pressure_ = true;
   std::string description_;

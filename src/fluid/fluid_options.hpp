@@ -15,6 +15,7 @@ struct FluidOptions {
   int order = 2;
   double backflow = 0.5;
   bool hydrostatic = false;
+  bool energy = false;
   std::string initial_velocity = "0, 0, 0";
   std::string initial_pressure = "0";
   std::string body_force = "0, 0, 0";
@@ -36,6 +37,7 @@ struct FluidOptions {
            fraction);
     option("hydrostatic", hydrostatic,
            "the pressure includes the static head; if not it is the pressure less density times gravity times height");
+    option("energy", energy, "solve the energy equation: the fluid has a temperature");
     option("initial_velocity", initial_velocity, "m/s, formulas in x, y, z");
     option("initial_pressure", initial_pressure, "Pa, formula in x, y, z");
     option("body_force", body_force, "N/m3 of mixture, formulas in x, y, z, t");

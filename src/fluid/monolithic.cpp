@@ -38,6 +38,8 @@ Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& f
       boundary_(mesh, options, fluid.density),
       system_(mesh, boundary_, options_.element == "taylor_hood" ? 2 : 1),
       solver_(system_),
+      energy_(EnergyEquation::create(mesh, options, fluid.energy, fluid.density, gravity, boundary_,
+                                     system_.space().order)),
       order_(fluid.order),
       gravity_(gravity) {
   density_ = fluid.density;
@@ -105,20 +107,19 @@ void Monolithic::prepare_step(double time, double dt) {
   if (body_force_)
     for (size_t i = 0; i < v; ++i) vec3(&f.body[3 * i]) = body_force_(vec3(&space.node_coordinates[3 * i]), time + dt);
 
-  // du/dt = a u^{n+1} + b u^n + c u^{n-1}.
-  const double previous = mesh_.nodes ? step_previous_[0] : 0;
-  const double last = mpi_max(previous);
-  double a = dt > 0 ? 1 / dt : 0, b = -a, c = 0;
-  if (order_ == 2 && last > 0 && dt > 0) {
-    const double ratio = dt / last;
-    a = (1 + 2 * ratio) / ((1 + ratio) * dt);
-    b = -(1 + ratio) / dt;
-    c = ratio * ratio / ((1 + ratio) * dt);
+  const double last = mpi_max(mesh_.nodes ? step_previous_[0] : 0.0);
+  bdf_ = dt <= 0 ? Bdf{0, 0, 0, 1, 0} : order_ == 2 && last > 0 ? Bdf::second(dt, last) : Bdf::first(dt);
+  if (energy_ && energy_->buoyant()) {
+    std::vector<double> force(3 * p, 0.0), all(3 * v);
+    energy_->add_buoyancy(bdf_, load_.void_fraction, model_a_, force);
+    space.interpolate(force.data(), all.data(), 3);
+    for (size_t i = 0; i < 3 * v; ++i) f.body[i] += all[i];
   }
-  f.parameters.time_coefficient = a;
+  f.parameters.time_coefficient = bdf_.c0;
   f.velocity_old = velocity_;
   f.history.assign(3 * v, 0.0);
-  for (size_t i = 0; i < 3 * v; ++i) f.history[i] = b * velocity_[i] + (c != 0 ? c * velocity_previous_[i] : 0.0);
+  for (size_t i = 0; i < 3 * v; ++i)
+    f.history[i] = bdf_.c2 * (bdf_.c2 != 0 ? velocity_previous_[i] : 0.0) - bdf_.c1 * velocity_[i];
 
   boundary_.evaluate(time + dt, load_.void_fraction.data());
   f.prescribed_velocity.resize(3 * v);
@@ -181,8 +182,12 @@ FluidStep Monolithic::advance(double time, double dt) {
   system_.constraints().impose(fields_.prescribed_velocity.data(), guess.data());
   system_.to_vector(guess.data(), pressure_.data(), unknown_);
   NewtonSolver::Result result;
+  int energy_iterations = 0;
   try {
     result = solver_.solve(fields_, unknown_, residual_scale_);
+    if (energy_)
+      energy_iterations = energy_->solve(time, bdf_, dt, load_, system_.superficial_velocity(fields_, unknown_),
+                                         system_.nodal_outflow(fields_, unknown_));
   } catch (const SolveFailure&) {
     system_.to_vector(before.data(), pressure_before.data(), unknown_);
     throw;
@@ -193,8 +198,11 @@ FluidStep Monolithic::advance(double time, double dt) {
   if (boundary_.closed()) remove_mean_pressure();
   find_change(before);
   find_pressure_gradient();
+  if (energy_) energy_->accept();
   FluidStep step = report(dt);
+  if (energy_) step.heat = energy_->heat();
   step.newton_iterations = result.newton;
+  step.energy_iterations = energy_iterations;
   step.velocity_iterations = step.pressure_iterations = result.linear;
   return step;
 }
@@ -284,6 +292,7 @@ std::vector<BoundaryFlow> Monolithic::boundary_flow() const {
     const bool open = boundary_.type(static_cast<int>(b)) == BoundaryType::pressure;
     result[b].volume_flow = open ? integrals[b].volume_flow : boundary_.boundary_flow()[b];
     result[b].mean_pressure = integrals[b].area > 0 ? integrals[b].pressure / integrals[b].area : 0;
+    if (energy_) result[b].heat_flow = energy_->heat_flow()[b];
     result[b].force = open ? integrals[b].traction : forces[b];
   }
   return result;
@@ -339,6 +348,7 @@ std::vector<Fluid::StateArray> Monolithic::state() {
   const size_t vertices = 3 * static_cast<size_t>(mesh_.nodes);
   vertices_.assign(velocity_.begin(), velocity_.begin() + static_cast<long>(vertices));
   vertices_previous_.assign(velocity_previous_.begin(), velocity_previous_.begin() + static_cast<long>(vertices));
+  if (energy_) energy_->add_state(result);
   if (system_.equal_order()) return result;
   const auto gather = [&](const std::vector<double>& from, std::vector<double>& to) {
     to.resize(3 * static_cast<size_t>(mesh_.cells) * (nv - np));

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "fluid/assembly/flow_system.hpp"
+#include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/newton_solver.hpp"
@@ -38,6 +39,12 @@ class Monolithic final : public Fluid {
   std::span<const double> velocity_change() const override { return change_; }
   std::span<const double> pressure() const override { return pressure_; }
   std::span<const double> pressure_gradient() const override { return pressure_gradient_; }
+  std::span<const double> temperature() const override {
+    return energy_ ? energy_->temperature() : std::span<const double>();
+  }
+  std::span<const double> temperature_change() const override {
+    return energy_ ? energy_->temperature_change() : std::span<const double>();
+  }
   std::vector<BoundaryFlow> boundary_flow() const override;
   std::vector<StateArray> state() override;
   void restored() override;
@@ -69,7 +76,9 @@ class Monolithic final : public Fluid {
   BoundaryConditions boundary_;
   FlowSystem system_;
   NewtonSolver solver_;
+  std::unique_ptr<EnergyEquation> energy_;
   StepFields fields_;
+  Bdf bdf_{};
   int order_;
   Vec3 gravity_;
   std::function<Vec3(const Vec3&, double)> body_force_;

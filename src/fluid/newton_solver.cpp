@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.hpp"
 
 namespace silt {
@@ -124,6 +126,7 @@ SNESConvergedReason NewtonSolver::run(SNES snes, Vec x, Result& result) {
 
 NewtonSolver::Result NewtonSolver::solve(const StepFields& fields, Vec x, double scale) {
   fields_ = &fields;
+  scale = std::max(scale, 1e-290);  // a fluid at rest has converged
   Result result;
   SILT_PETSC(VecCopy(x, start_));
   if (!tolerance_given_)

@@ -79,7 +79,7 @@ TEST_CASE("the pressure drop is that from where fluid is given to where pressure
   const auto drop = [&](std::vector<std::pair<std::string, std::string>> types) {
     Options options;
     for (const auto& [name, type] : types) options.set("boundary_" + name + "_type", type);
-    Diagnostics diagnostics(mesh, options, Vec3(0, 0, -9.81), true, false);
+    Diagnostics diagnostics(mesh, options, Vec3(0, 0, -9.81), &fluid, false);
     diagnostics.start(directory);
     Quantities quantities;
     diagnostics.sample(moment_of(fluid), quantities);
@@ -98,7 +98,7 @@ TEST_CASE("integrals of the fluid are those of its fields", "[app][mpi]") {
     TemporaryDirectory folder;
     const OutputDirectory directory = made(folder);
     Options options;
-    Diagnostics diagnostics(mesh, options, Vec3(0, 0, -9.81), true, false);
+    Diagnostics diagnostics(mesh, options, Vec3(0, 0, -9.81), &fluid, false);
     diagnostics.start(directory);
     Quantities q;
     diagnostics.sample(moment_of(fluid), q);
@@ -128,7 +128,7 @@ TEST_CASE("a probe gives linear fields exactly, on every rank", "[app][mpi]") {
     options.set("line_axis_from", "0,0.5,0");
     options.set("line_axis_to", "1,0.5,1");
     options.set("line_axis_points", "5");
-    Probes probes(mesh, options, true);
+    Probes probes(mesh, options, &fluid);
     probes.start(directory);
     Quantities q;
     probes.sample(moment_of(fluid), q);
@@ -141,9 +141,9 @@ TEST_CASE("a probe gives linear fields exactly, on every rank", "[app][mpi]") {
     for (size_t k = 0; k < 5; ++k) CHECK(p[k] == Approx(100 - 10.0 * static_cast<double>(k)));
     CHECK(probes.line("axis.temperature").empty());
     options.set("probe_tip_point", "0.3,0.7,1.45");
-    CHECK_THROWS_WITH(Probes(mesh, options, true),
+    CHECK_THROWS_WITH(Probes(mesh, options, &fluid),
                       Catch::Contains("-probe_tip_point") && Catch::Contains("outside the mesh"));
-    CHECK_THROWS_AS(Probes(mesh, options, false), UserError);
+    CHECK_THROWS_AS(Probes(mesh, options, nullptr), UserError);
   }
 }
 

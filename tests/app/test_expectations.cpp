@@ -134,7 +134,7 @@ TEST_CASE("the verdicts of a run are written with their sources", "[app][mpi]") 
   Quantities quantities;
   quantities.set("bed_height", 0.0302);
   expectations.sample(1.0, quantities);
-  CHECK(expectations.judge(directory, Probes(mesh, options, true), Profiles(mesh, options, true)));
+  CHECK(expectations.judge(directory, Probes(mesh, options, nullptr), Profiles(mesh, options, true)));
   std::ifstream in(directory.path("expectations.csv"));
   std::stringstream text;
   text << in.rdbuf();
@@ -143,5 +143,5 @@ TEST_CASE("the verdicts of a run are written with their sources", "[app][mpi]") 
   quantities.set("bed_height", 0.04);
   expectations.sample(2.0, quantities);
   MPI_Barrier(PETSC_COMM_WORLD);
-  CHECK_FALSE(expectations.judge(directory, Probes(mesh, options, true), Profiles(mesh, options, true)));
+  CHECK_FALSE(expectations.judge(directory, Probes(mesh, options, nullptr), Profiles(mesh, options, true)));
 }

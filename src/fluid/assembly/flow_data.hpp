@@ -40,7 +40,12 @@ struct FlowKernel {
   /// Cells first..first+count-1 (count <= lanes): residual [lanes][rows] and, when not null, matrix
   /// [lanes][rows][rows].
   void (*evaluate)(const FlowData& data, int first, int count, double* residual, double* matrix) = nullptr;
+  /// The superficial velocity whose divergence the continuity rows balance, at the points of the table:
+  /// [lanes][points][3] m/s.
+  void (*flux)(const FlowData& data, int first, int count, double* flux) = nullptr;
 };
+/// Doubles in the widest vectors of this machine: 2, 4 or 8.
+int widest_lanes();
 /// `lanes` 0 chooses by the machine; 2 (SSE2), 4 (AVX2), 8 (AVX-512) ask for one.
 FlowKernel flow_kernel(Cell cell, int order, int lanes = 0);
 

@@ -194,6 +194,14 @@ FacetIntegrals FlowFacets::integrate(const FlowData& data, int f) const {
   return result;
 }
 
+void FlowFacets::add_nodal_flow(const FlowData& data, int f, double* flow) const {
+  for (const Point& point : points_[mesh_.facets[f].facet]) {
+    const Geometry g = geometry(data, f, point);
+    const double through = values(data, f, point, g).flux.dot(g.normal);
+    for (int a = 0; a < np_; ++a) flow[a] += point.M[a] * through;
+  }
+}
+
 void FlowFacets::add_nodal_force(const FlowData& data, int f, double* force) const {
   for (const Point& point : points_[mesh_.facets[f].facet]) {
     const Geometry g = geometry(data, f, point);

@@ -36,6 +36,8 @@ class FlowFacets {
   /// Mesh::facets.
   void add(const FlowData& data, int f, const FacetTerm& term, double* residual, double* matrix) const;
   FacetIntegrals integrate(const FlowData& data, int f) const;
+  /// flow [vertices of the cell] += int M_a (alpha u)_h.n.
+  void add_nodal_flow(const FlowData& data, int f, double* flow) const;
   /// force [velocity nodes of the cell][3] += int N_a (force of the fluid on the boundary).
   void add_nodal_force(const FlowData& data, int f, double* force) const;
 

@@ -258,21 +258,46 @@ void evaluate_flow(const FlowData& data, int first, int count, double* residual,
       for (int l = 0; l < W; ++l) matrix[static_cast<long>(l) * rows * rows + k] = K[k][l];
 }
 
+template <Cell C, int order, int W>
+void evaluate_flux(const FlowData& data, int first, int count, double* flux) {
+  using E = FlowElement<C, order>;
+  using V = Lanes<W>;
+  constexpr int dim = E::dim;
+  FlowBatch<E, V> b;
+  for (int l = 0; l < W; ++l) b.gather(data, first + (l < count ? l : count - 1), l);
+  const FlowTable& t = *data.table;
+  for (int q = 0; q < t.points; ++q) {
+    FlowPoint<E, V> at;
+    at.map(t, q, b.x);
+    FlowState<V, dim> s;
+    FlowCoefficients<V, dim> k;
+    interpolate<E, V>(b, at, t, q, s, k);
+    FlowResidual<V, dim> r;
+    VolumeAveragedNavierStokes<dim>::residual(s, k, data.parameters, r);
+    for (int i = 0; i < dim; ++i) {
+      V carried = r.flux[i] * (-1.0 / data.parameters.continuity_scale);
+      for (int a = 0; a < E::NV; ++a) carried += b.alpha[a] * b.u[a][i] * t.N[q][a];
+      for (int l = 0; l < W; ++l) flux[3 * (static_cast<long>(l) * t.points + q) + i] = carried[l];
+    }
+  }
+}
+
+template <Cell C, int order, int W>
+FlowKernel flow_kernel_for() {
+  return {W, FlowElement<C, order>::rows, &evaluate_flow<C, order, W>, &evaluate_flux<C, order, W>};
+}
+
 template <int W>
 FlowKernel flow_kernel_of(Cell cell, int order) {
   switch (cell) {
     case Cell::triangle:
-      if (order == 1) return {W, FlowElement<Cell::triangle, 1>::rows, &evaluate_flow<Cell::triangle, 1, W>};
-      return {W, FlowElement<Cell::triangle, 2>::rows, &evaluate_flow<Cell::triangle, 2, W>};
+      return order == 1 ? flow_kernel_for<Cell::triangle, 1, W>() : flow_kernel_for<Cell::triangle, 2, W>();
     case Cell::quadrilateral:
-      if (order == 1) return {W, FlowElement<Cell::quadrilateral, 1>::rows, &evaluate_flow<Cell::quadrilateral, 1, W>};
-      return {W, FlowElement<Cell::quadrilateral, 2>::rows, &evaluate_flow<Cell::quadrilateral, 2, W>};
+      return order == 1 ? flow_kernel_for<Cell::quadrilateral, 1, W>() : flow_kernel_for<Cell::quadrilateral, 2, W>();
     case Cell::tetrahedron:
-      if (order == 1) return {W, FlowElement<Cell::tetrahedron, 1>::rows, &evaluate_flow<Cell::tetrahedron, 1, W>};
-      return {W, FlowElement<Cell::tetrahedron, 2>::rows, &evaluate_flow<Cell::tetrahedron, 2, W>};
+      return order == 1 ? flow_kernel_for<Cell::tetrahedron, 1, W>() : flow_kernel_for<Cell::tetrahedron, 2, W>();
     default:
-      if (order == 1) return {W, FlowElement<Cell::hexahedron, 1>::rows, &evaluate_flow<Cell::hexahedron, 1, W>};
-      return {W, FlowElement<Cell::hexahedron, 2>::rows, &evaluate_flow<Cell::hexahedron, 2, W>};
+      return order == 1 ? flow_kernel_for<Cell::hexahedron, 1, W>() : flow_kernel_for<Cell::hexahedron, 2, W>();
   }
 }
 

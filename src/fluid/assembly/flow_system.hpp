@@ -62,6 +62,11 @@ class FlowSystem {
   /// The momentum residual before the conditions are put in: at a constrained node minus the force of the fluid on the
   /// boundary. [v][3] N, summed over ranks. Collective.
   std::vector<double> reaction(const StepFields& fields, Vec x) const;
+  /// [cells][points][3] m/s at the points of flow_table: the superficial velocity whose divergence the continuity rows
+  /// balance, stabilisation included.
+  std::vector<double> superficial_velocity(const StepFields& fields, Vec x) const;
+  /// [p] m3/s, int N_i U.n over the whole boundary, as the continuity rows see it. Collective.
+  std::vector<double> nodal_outflow(const StepFields& fields, Vec x) const;
   /// Integrals over each boundary, summed over ranks. Collective.
   std::vector<FacetIntegrals> boundary_integrals(const StepFields& fields, Vec x) const;
   /// Force of the fluid on each boundary with a velocity condition, from the reaction (of higher order than the

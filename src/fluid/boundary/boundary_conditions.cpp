@@ -23,6 +23,7 @@ void BoundaryOptions::options(OptionGroup& option) {
          "no_slip: velocity of the wall");
   option("mass_flow", mass_flow, "kg/s into the domain (per metre of depth in 2D), a formula in t; uniform and normal");
   option("pressure", pressure, "Pa, formula in x, y, z, t");
+  option.group("temperature", temperature);
 }
 
 BoundaryConditions::BoundaryConditions(const Mesh& mesh, Options& options, double density)

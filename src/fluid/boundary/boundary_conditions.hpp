@@ -10,6 +10,7 @@
 #include "base/mesh.hpp"
 #include "base/options.hpp"
 #include "fluid/boundary/facets.hpp"
+#include "fluid/boundary/temperature_condition.hpp"
 
 namespace silt {
 
@@ -22,6 +23,7 @@ struct BoundaryOptions {
   std::string velocity = "0, 0, 0";
   std::string mass_flow = "0";
   std::string pressure = "0";
+  TemperatureOptions temperature;
   void options(OptionGroup& option);
 };
 

@@ -48,6 +48,7 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
       momentum_(graph_),
       velocity_solver_(mesh),
       pressure_solver_(graph_, boundaries_.pressure_boundary(), boundaries_.closed()),
+      energy_(EnergyEquation::create(mesh, options, fluid.energy, fluid.density, gravity, boundaries_, 1)),
       mass_(lumped_mass(mesh)) {
   load_ = ParticleLoad(mesh.nodes);
   density_ = fluid.density;
@@ -55,7 +56,7 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
   model_a_ = fluid.model == "a";
   reduced_pressure_ = !fluid.hydrostatic;
   initial_pressure_given_ = options.given("fluid_initial_pressure");
-  has_weight_ = fluid.hydrostatic && gravity.norm() > 0;
+  has_weight_ = (fluid.hydrostatic && gravity.norm() > 0) || (energy_ && energy_->buoyant());
   has_body_force_ = options.given("fluid_body_force") || has_weight_;
 
   const int n = mesh.nodes;
@@ -81,7 +82,7 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
   old_velocity_ = velocity_;
   terms_.pressure = pressure_.data();
   set_pressure_gradient();
-  if (has_weight_ && !initial_pressure_given_)  // what the start will find
+  if (fluid.hydrostatic && !initial_pressure_given_)  // what the start will find
     for (int i = 0; i < n; ++i) vec3(&pressure_gradient_[3 * i]) = density_ * gravity;
 
   const std::size_t padded = loops_.padded_cells();
@@ -137,14 +138,17 @@ void PressureCorrection::prepare(double time, double dt, const Past& past) {
   boundaries_.impose(convecting_.data());
 
   for (int i = 0; i < n; ++i) drag_now_[i] = mass_[i] > 0 ? load_.response[i] / mass_[i] : 0;
+  if (has_weight_) {
+    for (int i = 0; i < n; ++i) {
+      const double share = !fluid_.hydrostatic ? 0.0 : model_a_ ? load_.void_fraction[i] : 1.0;
+      vec3(&weight_[3 * i]) = density_ * share * gravity_;
+    }
+    if (energy_) energy_->add_buoyancy(bdf_, load_.void_fraction, model_a_, weight_);
+  }
   if (has_body_force_)
     for (int i = 0; i < n; ++i) {
       Vec3 force = body_force_expression_(vec3(&mesh_.node_coordinates[3 * i]), time + dt);
-      if (has_weight_) {
-        const Vec3 weight = density_ * (model_a_ ? load_.void_fraction[i] : 1.0) * gravity_;
-        vec3(&weight_[3 * i]) = weight;
-        force += weight;
-      }
+      if (has_weight_) force += vec3(&weight_[3 * i]);
       if (mesh_.dimension == 2) force.z() = 0;
       vec3(&body_force_[3 * i]) = force;
     }
@@ -256,13 +260,14 @@ std::vector<double> PressureCorrection::continuity(const std::vector<double>& u,
   ContinuityTerms in{flux_.data(), pressure_.data(), nullptr, cell_.stabilisation, {}};
   for (int d = 0; d < 3; ++d) in.balance[d] = balance ? cell_.balance[d] : nullptr;
 
-  std::vector<double> sums(4 * n, 0.0), projection(3 * n);
+  std::vector<double> sums(4 * n, 0.0);
+  projection_.resize(3 * n);
   loops_.projection(in, sums.data());
   mesh_.sum_shared(sums.data(), 4);
   for (int i = 0; i < n; ++i)
-    for (int d = 0; d < 3; ++d) projection[3 * i + d] = sums[4 * i + d] / sums[4 * i + 3];
+    for (int d = 0; d < 3; ++d) projection_[3 * i + d] = sums[4 * i + d] / sums[4 * i + 3];
 
-  in.projection = projection.data();
+  in.projection = projection_.data();
   std::fill(sums.begin(), sums.begin() + 2 * n, 0.0);
   loops_.continuity(in, sums.data());
   mesh_.sum_shared(sums.data(), 2);
@@ -301,17 +306,24 @@ FluidStep PressureCorrection::advance(double time, double dt) {
     try {
       if (unknown) set_static_pressure(before);
       solve(before, step, phi, divergence);
+      if (energy_) {
+        std::vector<double> outflow = outflow_;
+        for (int i = 0; i < mesh_.nodes; ++i) outflow[i] += boundaries_.flow()[i];
+        step.energy_iterations = energy_->solve(time, bdf_, dt, load_, superficial_velocity(phi), outflow);
+      }
     } catch (const SolveFailure&) {
       if (unknown) pressure_ = start;
       throw;
     }
     accept(before, dt, phi, divergence);
+    if (energy_) energy_->accept();
   } catch (const SolveFailure&) {
     renew_ = true;
     throw;
   }
   step.mass_residual = mass_residual_;
   const FluidStep balance = report(dt);
+  if (energy_) step.heat = energy_->heat();
   step.courant = balance.courant, step.momentum = balance.momentum, step.boundary_force = balance.boundary_force;
   return step;
 }

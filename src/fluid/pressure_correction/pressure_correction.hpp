@@ -5,6 +5,7 @@
 
 #include "base/nodal_matrix.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
+#include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/pressure_correction/bdf.hpp"
@@ -40,6 +41,12 @@ class PressureCorrection : public Fluid {
   std::span<const double> velocity_change() const override { return velocity_change_; }
   std::span<const double> pressure() const override { return pressure_; }
   std::span<const double> pressure_gradient() const override { return pressure_gradient_; }
+  std::span<const double> temperature() const override {
+    return energy_ ? energy_->temperature() : std::span<const double>();
+  }
+  std::span<const double> temperature_change() const override {
+    return energy_ ? energy_->temperature_change() : std::span<const double>();
+  }
   std::vector<BoundaryFlow> boundary_flow() const override;
   std::vector<StateArray> state() override;
 
@@ -62,6 +69,8 @@ class PressureCorrection : public Fluid {
   /// The pressure that balances the forces on the fluid at rest, for a start of which no pressure is known.
   void set_static_pressure(const Past& before);
   void solve(const Past& before, FluidStep& step, std::vector<double>& phi, std::vector<double>& divergence);
+  /// [cells][points][3] the superficial velocity that the pressure equation balanced, at the quadrature points.
+  std::vector<double> superficial_velocity(const std::vector<double>& phi) const;
   void set_pressure_gradient();
   void accept(const Past& before, double dt, std::vector<double>& phi, const std::vector<double>& divergence);
   void check_balance(double flows, double volume_rate) const;
@@ -79,6 +88,7 @@ class PressureCorrection : public Fluid {
   NodalMatrix momentum_;
   VelocitySolver velocity_solver_;
   PressureSolver pressure_solver_;
+  std::unique_ptr<EnergyEquation> energy_;
   std::vector<double> mass_;       ///< [nodes] m3, lumped
   std::vector<double> node_size_;  ///< [nodes] m, shortest edge of the local cells around
   bool has_body_force_ = false, has_weight_ = false, initial_pressure_given_ = false;
@@ -96,7 +106,7 @@ class PressureCorrection : public Fluid {
   double matrix_rate_ = 0;  ///< gamma/dt of the assembled pressure matrix
   int matrix_age_ = 0;
   std::vector<double> convecting_, history_, body_force_, weight_, load_per_drag_, drag_now_, right_, solution_, flux_,
-      effective_;
+      effective_, projection_;
   std::vector<double> cell_values_;  ///< the arrays of CellCoefficients and the increment factors, one after the other
   CellCoefficients cell_{};
   double *increment_factor_ = nullptr, *old_increment_factor_ = nullptr, *scratch_[4] = {};

@@ -53,6 +53,7 @@ Vec3 PressureCorrection::boundary_reactions(std::vector<BoundaryFlow>& flows) co
     flows[b].volume_flow = at(b)[0] + boundaries_.boundary_flow()[b];
     flows[b].mean_pressure = at(b)[1] / boundaries_.area(b);
     flows[b].force = vec3(at(b) + 2);
+    if (energy_) flows[b].heat_flow = energy_->heat_flow()[b];
     convected += vec3(at(b) + 5);
   }
   return convected;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "fluid/assembly/flow_table.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
 
 namespace silt {
@@ -81,6 +82,38 @@ void PressureCorrection::accept(const Past& before, double dt, std::vector<doubl
   renew_ = false;
 }
 
+std::vector<double> PressureCorrection::superficial_velocity(const std::vector<double>& phi) const {
+  const FlowTable& table = flow_table(mesh_.cell, 1);
+  const std::size_t nv = mesh_.nodes_per_cell, points = table.points;
+  const bool balance = porous_ || has_weight_;
+  std::vector<double> result(3 * points * mesh_.cells);
+  for (int c = 0; c < mesh_.cells; ++c) {
+    const double* x = &mesh_.cell_coordinates[3 * nv * c];
+    const int* node = &mesh_.cell_nodes[nv * c];
+    const double mobility = cell_.void_fraction[c] * cell_.mobility[c], tau = cell_.stabilisation[c];
+    Vec3 known = Vec3::Zero();
+    if (balance)
+      for (int d = 0; d < mesh_.dimension; ++d) known[d] = cell_.balance[d][c];
+    for (std::size_t q = 0; q < points; ++q) {
+      Mat3 J = Mat3::Zero();
+      Vec3 increment = Vec3::Zero(), rest = Vec3::Zero(), flux = Vec3::Zero(), projected = Vec3::Zero();
+      for (std::size_t a = 0; a < nv; ++a) {
+        const Vec3 slope = vec3(table.dM[q][a]);
+        J += vec3(x + 3 * a) * slope.transpose();
+        increment += phi[node[a]] * slope;
+        rest += pressure_[node[a]] * slope;
+        flux += table.M[q][a] * vec3(&flux_[3 * node[a]]);
+        projected += table.M[q][a] * vec3(&projection_[3 * node[a]]);
+      }
+      if (mesh_.dimension == 2) J(2, 2) = 1;
+      const Mat3 inverse = J.inverse().transpose();
+      vec3(&result[3 * (points * c + q)]) =
+          flux - (mobility + tau) * (inverse * increment) - tau * (inverse * rest + known - projected);
+    }
+  }
+  return result;
+}
+
 double PressureCorrection::courant_rate() const {
   double rate = 0;
   for (int i = 0; i < mesh_.nodes; ++i) rate = std::max(rate, vec3(&velocity_[3 * i]).norm() / node_size_[i]);
@@ -90,18 +123,20 @@ double PressureCorrection::courant_rate() const {
 std::vector<Fluid::StateArray> PressureCorrection::state() {
   // Matrices and hierarchy are made afresh after a checkpoint, as after a restart: both go on with the same bits.
   renew_ = true;
-  return {{"velocity", &velocity_, 3},
-          {"old_velocity", &old_velocity_, 3},
-          {"pressure", &pressure_, 1},
-          {"pressure_increment", &increment_, 1},
-          {"old_pressure_increment", &old_increment_, 1},
-          {"last_void_fraction", &void_fraction_, 1},
-          {"old_void_fraction", &old_void_fraction_, 1},
-          {"drag", &drag_, 1},
-          {"old_drag", &old_drag_, 1},
-          {"pressure_gradient", &pressure_gradient_, 3},
-          {"velocity_change", &velocity_change_, 3},
-          {"fluid_steps", &past_, 4}};
+  std::vector<StateArray> arrays = {{"velocity", &velocity_, 3},
+                                    {"old_velocity", &old_velocity_, 3},
+                                    {"pressure", &pressure_, 1},
+                                    {"pressure_increment", &increment_, 1},
+                                    {"old_pressure_increment", &old_increment_, 1},
+                                    {"last_void_fraction", &void_fraction_, 1},
+                                    {"old_void_fraction", &old_void_fraction_, 1},
+                                    {"drag", &drag_, 1},
+                                    {"old_drag", &old_drag_, 1},
+                                    {"pressure_gradient", &pressure_gradient_, 3},
+                                    {"velocity_change", &velocity_change_, 3},
+                                    {"fluid_steps", &past_, 4}};
+  if (energy_) energy_->add_state(arrays);
+  return arrays;
 }
 
 }  // namespace silt
