@@ -52,6 +52,7 @@ Options everything() {
   declare(options, "normal", NormalModels{}, "normal contact force");
   declare(options, "tangential", TangentialModels{}, "tangential contact force");
   declare(options, "rolling", RollingModels{}, "rolling resistance");
+  declare(options, "twisting", TwistingModels{}, "twisting resistance");
   declare<ParticleOptions>(options, "particles");
   declare<InsertionOptions>(options, "insertion_<name>");
   declare<SettleOptions>(options, "settle");
@@ -67,9 +68,32 @@ Options everything() {
   return options;
 }
 
-template <class... Model>
-void list(std::string& text, const char* slot, Models<Model...>) {
-  ((text += fmt::format("{:<12} {}\n", slot, Model::name)), ...);
+/// Calls act(slot, model) for every model of every list.
+template <class... Model, class Act>
+void each_of(const char* slot, Models<Model...>, Act&& act) {
+  (act(slot, Model{}), ...);
+}
+template <class Act>
+void each_model(Act&& act) {
+  each_of("normal", NormalModels{}, act);
+  each_of("tangential", TangentialModels{}, act);
+  each_of("rolling", RollingModels{}, act);
+  each_of("twisting", TwistingModels{}, act);
+  each_of("drag", DragModels{}, act);
+}
+
+template <class Model>
+constexpr ModelNote note_of(const Model&) {
+  if constexpr (requires { Model::note; })
+    return Model::note;
+  else
+    return {"", "", "", ""};
+}
+
+/// A cell of a Markdown table.
+std::string cell(std::string text) {
+  for (size_t k = 0; (k = text.find('|', k)) != std::string::npos; k += 2) text.insert(k, 1, '\\');
+  return text;
 }
 
 }  // namespace
@@ -81,10 +105,36 @@ const Options& catalogue() {
 
 std::string model_list() {
   std::string text;
-  list(text, "normal", NormalModels{});
-  list(text, "tangential", TangentialModels{});
-  list(text, "rolling", RollingModels{});
-  list(text, "drag", DragModels{});
+  each_model([&](const char* slot, const auto& model) {
+    const ModelNote note = note_of(model);
+    text += fmt::format("{:<13} {:<19} {:<22} {}\n", slot, model.name, note.equation[0] ? note.equation : "-",
+                        note.source[0] ? note.source : "-");
+  });
+  return text;
+}
+
+std::string model_page() {
+  std::string text, section;
+  each_model([&](const char* slot, auto model) {
+    if (section != slot) {
+      section = slot;
+      text += fmt::format(
+          "\n## `-{}_type`\n\n| name | formula | parameters `-{}_...` | source | checked against |\n"
+          "|---|---|---|---|---|\n",
+          slot, slot);
+    }
+    Options scratch;
+    scratch.read("", model);
+    std::string parameters;
+    for (const auto& entry : scratch.entries())
+      parameters += fmt::format("{}`{}`{}", parameters.empty() ? "" : ", ", entry.name,
+                                entry.unit.empty() || entry.unit == "-" ? "" : " (" + entry.unit + ")");
+    const ModelNote note = note_of(model);
+    const std::string source =
+        fmt::format("{}{}{}", note.equation, *note.equation && *note.source ? ", " : "", note.source);
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", model.name, cell(note.formula), cell(parameters),
+                        cell(source), cell(note.check));
+  });
   return text;
 }
 

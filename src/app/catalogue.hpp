@@ -11,4 +11,7 @@ const Options& catalogue();
 /// The laws that can be chosen, a line each: slot, name, equation and source.
 std::string model_list();
 
+/// The same with formulas, parameters and checks: the body of docs/models.md.
+std::string model_page();
+
 }  // namespace silt

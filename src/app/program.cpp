@@ -88,6 +88,10 @@ int answer(const std::vector<std::string>& arguments) {
     if (talk) fmt::print("{}", catalogue().markdown());
     return 0;
   }
+  if (options.find("models_page")) {
+    if (talk) fmt::print("{}", model_page());
+    return 0;
+  }
   const bool check = options.find("check").has_value();
   options.insert_into_petsc();
   const auto simulation = build(options);

@@ -7,6 +7,14 @@
 
 namespace silt {
 
+/// What `silt -models` and docs/models.md say of a model; its `static constexpr ModelNote note`.
+struct ModelNote {
+  const char* equation;  ///< tag of the equation, "" where it has none
+  const char* source;    ///< paper
+  const char* formula;   ///< as in the docstring, in one line
+  const char* check;     ///< closed form it is tested against
+};
+
 /// A list of physical models among which the user picks one by name: `using Normal = Models<Linear, Tsuji>;`.
 /// A model has `static constexpr const char* name`, `void options(OptionGroup&)` and, where its options depend on each
 /// other, `void check() const` (throws UserError); the list's line is its

@@ -26,6 +26,11 @@ struct Contact {
   Real spin[3];           ///< rad/s, w_i - w_j
   Real effective_radius;  ///< m, (7.14)
   Real effective_mass;    ///< kg, (7.10)
+
+  // Only where a law of the run is `extended` (as spin):
+  Real radius;           ///< m, of i; with effective_radius it gives R_j also at a wall: 1/R_j = 1/R_eff - 1/R_i
+  Real distance;         ///< m, X = R_ij between the centres; at a wall from the centre to the wall
+  Real rolling_inertia;  ///< kg m2, of the relative rolling, (1/(7/5 m_i R_i^2) + 1/(7/5 m_j R_j^2))^-1
 };
 
 /// Distances from the two centres to the contact point. arm_i + arm_j = R_ij, so that a pair of equal and opposite
@@ -87,6 +92,9 @@ inline Contact<double> wall_contact(const Motion& particle, const WallPoint& poi
   contact.overlap = particle.radius - point.distance;
   contact.effective_radius = particle.radius;
   contact.effective_mass = 1 / particle.inverse_mass;
+  contact.radius = particle.radius;
+  contact.distance = point.distance;
+  contact.rolling_inertia = 1.4 * particle.radius * particle.radius / particle.inverse_mass;
   set_relative_motion(contact, velocity, rolling);
   return contact;
 }

@@ -3,6 +3,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "base/error.hpp"
+
 namespace silt {
 namespace {
 
@@ -28,52 +30,52 @@ std::vector<double> table(const Model& model, const Materials& materials, double
   return result;
 }
 
-template <class Any>
-int history_of(const Any& model) {
-  return std::visit(
-      [](const auto& m) { return doubles_in<typename std::decay_t<decltype(m)>::template History<double>>; }, model);
-}
-
 }  // namespace
 
-ContactLaws::ContactLaws(Options& options, const Materials& materials)
-    : materials_(materials),
-      normal_(NormalModels::read(options, "normal", "tsuji", "normal contact law")),
-      tangential_(TangentialModels::read(options, "tangential", "mindlin", "tangential contact law")),
-      rolling_(RollingModels::read(options, "rolling", "none", "rolling resistance")) {
+ContactLaws::ContactLaws(Options& options, const Materials& materials) : materials_(materials) {
+  normal_.model = NormalModels::read(options, "normal", "tsuji", "normal contact law");
+  tangential_.model = TangentialModels::read(options, "tangential", "mindlin", "tangential contact law");
+  rolling_.model = RollingModels::read(options, "rolling", "none", "rolling resistance");
+  twisting_.model = TwistingModels::read(options, "twisting", "none", "twisting resistance");
   setup_.materials = materials.count();
-  setup_.normal.model = static_cast<int>(normal_.index());
-  setup_.tangential.model = static_cast<int>(tangential_.index());
-  setup_.rolling.model = static_cast<int>(rolling_.index());
-  setup_.normal.first_history = 0;
-  setup_.tangential.first_history = history_of(normal_);
-  setup_.rolling.first_history = setup_.tangential.first_history + history_of(tangential_);
-  history_components_ = setup_.rolling.first_history + history_of(rolling_);
+  each([&](const auto& slot, LawStage& stage) {
+    stage.model = static_cast<int>(slot.model.index());
+    stage.first_history = history_components_;
+    std::visit(
+        [&](const auto& model) {
+          using Model = std::decay_t<decltype(model)>;
+          history_components_ += doubles_in<typename Model::template History<double>>;
+          setup_.extended |= Model::extended;
+        },
+        slot.model);
+  });
+  check_combination();
   prepare(1);
 }
 
-void ContactLaws::scale_friction(double factor) { prepare(factor); }
-
-void ContactLaws::prepare(double friction_factor) {
-  const auto tabulate = [&](const auto& model) { return table(model, materials_, friction_factor); };
-  normal_constants_ = std::visit(tabulate, normal_);
-  tangential_constants_ = std::visit(tabulate, tangential_);
-  rolling_constants_ = std::visit(tabulate, rolling_);
-  setup_.normal.constants = normal_constants_.data();
-  setup_.tangential.constants = tangential_constants_.data();
-  setup_.rolling.constants = rolling_constants_.data();
+void ContactLaws::check_combination() const {
+  if (const auto* spring = std::get_if<SpringRolling>(&rolling_.model); spring && spring->needs_neck())
+    throw UserError("-rolling_type spring needs -rolling_stiffness (N, positive): only a JKR neck has a default");
 }
 
-double ContactLaws::duration(int a, int b, double mass, double radius, double speed) const {
+void ContactLaws::prepare(double friction_factor) {
+  each([&](auto& slot, LawStage& stage) {
+    slot.constants =
+        std::visit([&](const auto& model) { return table(model, materials_, friction_factor); }, slot.model);
+    stage.constants = slot.constants.data();
+  });
+}
+
+double ContactLaws::duration(int a, int b, const Encounter& encounter) const {
   return std::visit(
       [&](const auto& model) {
-        return std::decay_t<decltype(model)>::duration(model.constants(materials_.pair(a, b)), mass, radius, speed);
+        return std::decay_t<decltype(model)>::duration(model.constants(materials_.pair(a, b)), encounter);
       },
-      normal_);
+      normal_.model);
 }
 
 bool ContactLaws::hertzian() const {
-  return std::visit([](const auto& model) { return std::decay_t<decltype(model)>::hertzian; }, normal_);
+  return std::visit([](const auto& model) { return std::decay_t<decltype(model)>::hertzian; }, normal_.model);
 }
 
 }  // namespace silt

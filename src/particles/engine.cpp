@@ -366,7 +366,15 @@ ParticleStep Engine::advance(double time, double dt) {
   kernels_.integrate(step);
   collect_fluid();
   stop_if_any(trouble_);
-  if (!migration_.all_at_home(store)) rebuild(store.present, false, h);
+  if (!migration_.all_at_home(store)) {
+    const long long before = removed;
+    rebuild(store.present, false, h);
+    if (removed > before) {  // the forces that those gone exerted must not act on
+      for (int p = 0; p < store.all(); ++p) store.present[p] = Load{};
+      evaluate(time + dt, 0);
+      stop_if_any(trouble_);
+    }
+  }
   result.substeps = substeps;
   result.rebuilds = rebuilds_;
   result.removed = removed;

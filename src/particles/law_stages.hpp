@@ -18,8 +18,10 @@ struct alignas(64) Block {
   double slip[3][block_size], spin[3][block_size];
   double effective_radius[block_size], effective_mass[block_size];
   double arm_i[block_size], arm_j[block_size];
-  double pair[block_size];  ///< number of the pair of materials
-  double normal_force[block_size], damping[block_size], contact_radius[block_size];
+  double pair[block_size];                                                       ///< number of the pair of materials
+  double radius[block_size], distance[block_size], rolling_inertia[block_size];  ///< extended
+  double normal_force[block_size], damping[block_size], contact_radius[block_size], stiffness[block_size];
+  double pull_off[block_size] = {};  ///< stays 0 without adhesion
   double force[3][block_size], torque[3][block_size];
 };
 
@@ -34,11 +36,15 @@ SILT_INLINE Contact<Pack> contact_at(const Block& block, int o) {
   contact.approach = load(&block.approach[o]);
   contact.effective_radius = load(&block.effective_radius[o]);
   contact.effective_mass = load(&block.effective_mass[o]);
+  contact.radius = load(&block.radius[o]);
+  contact.distance = load(&block.distance[o]);
+  contact.rolling_inertia = load(&block.rolling_inertia[o]);
   return contact;
 }
 
 SILT_INLINE NormalLoad<Pack> normal_load_at(const Block& block, int o) {
-  return {load(&block.normal_force[o]), load(&block.damping[o]), load(&block.contact_radius[o])};
+  return {load(&block.normal_force[o]), load(&block.damping[o]), load(&block.contact_radius[o]),
+          load(&block.stiffness[o]), load(&block.pull_off[o])};
 }
 
 template <class Struct>
@@ -102,6 +108,7 @@ void normal_stage(Block& block, const StageCall& call) {
     store(&block.normal_force[o], result.force);
     store(&block.damping[o], result.damping);
     store(&block.contact_radius[o], result.contact_radius);
+    store(&block.stiffness[o], result.stiffness);
   }
 }
 
@@ -137,52 +144,69 @@ void rolling_stage(Block& block, const StageCall& call) {
   }
 }
 
-/// The stage functions of a list of models, by place in the list.
-template <bool several, class... Model>
-SILT_INLINE StageFunction normal_function(const Models<Model...>*, int model) {
-  static constexpr StageFunction functions[] = {normal_stage<Model, several>...};
-  return functions[model];
-}
-template <bool several, class... Model>
-SILT_INLINE StageFunction tangential_function(const Models<Model...>*, int model) {
-  static constexpr StageFunction functions[] = {tangential_stage<Model, several>...};
-  return functions[model];
-}
-template <bool several, class... Model>
-SILT_INLINE StageFunction rolling_function(const Models<Model...>*, int model) {
-  static constexpr StageFunction functions[] = {rolling_stage<Model, several>...};
-  return functions[model];
-}
-template <class... Model>
-SILT_INLINE bool rolls(const Models<Model...>*, int model) {
-  static constexpr bool acts[] = {Model::acts...};
-  return acts[model];
+template <class Model, bool several>
+void twisting_stage(Block& block, const StageCall& call) {
+  using Constants = typename Model::template Constants<Pack>;
+  using History = typename Model::template History<Pack>;
+  const Pack dt(call.dt);
+  for (int o = 0; o < call.count; o += lanes) {
+    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
+    History history = history_at<History>(call.history, o);
+    const Contact<Pack> contact = contact_at(block, o);
+    const Pack torque = Model::template torque<Pack>(contact, normal_load_at(block, o), constants, dt, history);
+    keep_history(history, call.history, o);
+    for (int d = 0; d < 3; ++d) store(&block.torque[d][o], load(&block.torque[d][o]) + torque * contact.normal[d]);
+  }
 }
 
-/// The three laws of a run, looked up once a sweep.
-struct Laws {
-  StageFunction normal, tangential, rolling;
-  bool rolls;
-  SILT_INLINE explicit Laws(const LawSetup& setup) {
-    const NormalModels* normals = nullptr;
-    const TangentialModels* tangentials = nullptr;
-    const RollingModels* rollings = nullptr;
-    const bool several = setup.materials > 1;
-    const int n = setup.normal.model, t = setup.tangential.model, r = setup.rolling.model;
-    normal = several ? normal_function<true>(normals, n) : normal_function<false>(normals, n);
-    tangential = several ? tangential_function<true>(tangentials, t) : tangential_function<false>(tangentials, t);
-    rolling = several ? rolling_function<true>(rollings, r) : rolling_function<false>(rollings, r);
-    rolls = SILT_ISA::rolls(rollings, r);
+/// The stage functions of a list of models, by place in the list.
+#define SILT_STAGE_OF(kind)                                                         \
+  template <bool several, class... Model>                                           \
+  SILT_INLINE StageFunction kind##_function(const Models<Model...>*, int model) {   \
+    static constexpr StageFunction functions[] = {kind##_stage<Model, several>...}; \
+    return functions[model];                                                        \
   }
-  SILT_INLINE void run(Block& block, const LawSetup& setup, double* history, std::size_t stride, int count,
-                       double dt) const {
-    const auto call = [&](const LawStage& stage) {
-      return StageCall{&setup, &stage, {history + stage.first_history * stride, stride}, count, dt};
-    };
-    normal(block, call(setup.normal));
-    tangential(block, call(setup.tangential));
-    if (rolls) rolling(block, call(setup.rolling));
+SILT_STAGE_OF(normal)
+SILT_STAGE_OF(tangential)
+SILT_STAGE_OF(rolling)
+SILT_STAGE_OF(twisting)
+#undef SILT_STAGE_OF
+
+/// The laws of a run in the order in which they act, looked up once a sweep.
+class Laws {
+ public:
+  SILT_INLINE explicit Laws(const LawSetup& setup) : setup_(setup) {
+    setup.materials > 1 ? choose<true>(setup) : choose<false>(setup);
   }
+  SILT_INLINE void run(Block& block, double* history, std::size_t stride, int count, double dt) const {
+    for (int s = 0; s < count_; ++s) {
+      const LawStage& stage = *stage_[s];
+      function_[s](block, {&setup_, &stage, {history + stage.first_history * stride, stride}, count, dt});
+    }
+  }
+
+ private:
+  SILT_INLINE void add(StageFunction function, const LawStage& stage) {
+    function_[count_] = function;
+    stage_[count_++] = &stage;
+  }
+  template <bool several>
+  SILT_INLINE void choose(const LawSetup& setup) {
+    add(normal_function<several>(static_cast<const NormalModels*>(nullptr), setup.normal.model), setup.normal);
+    add(tangential_function<several>(static_cast<const TangentialModels*>(nullptr), setup.tangential.model),
+        setup.tangential);
+    if (!setup.extended) return;
+    // The first of the two writes the torque, be it none.
+    add(rolling_function<several>(static_cast<const RollingModels*>(nullptr), setup.rolling.model), setup.rolling);
+    if (setup.twisting.model > 0)
+      add(twisting_function<several>(static_cast<const TwistingModels*>(nullptr), setup.twisting.model),
+          setup.twisting);
+  }
+
+  const LawSetup& setup_;
+  StageFunction function_[12];
+  const LawStage* stage_[12];
+  int count_ = 0;
 };
 
 }  // namespace SILT_ISA

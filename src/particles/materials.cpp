@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error.hpp"
 
 namespace silt {
@@ -13,9 +15,11 @@ PairProperties mean_of(const Material& a, const Material& b) {
   PairProperties pair;
   pair.effective_young = 1 / (plane(a) + plane(b));
   pair.effective_shear = 1 / ((2 - a.poisson_ratio) / shear(a) + (2 - b.poisson_ratio) / shear(b));
+  pair.poisson_ratio = 0.5 * (a.poisson_ratio + b.poisson_ratio);
   pair.restitution = 0.5 * (a.restitution + b.restitution);
   pair.friction = 0.5 * (a.friction + b.friction);
   pair.rolling_friction = 0.5 * (a.rolling_friction + b.rolling_friction);
+  pair.yield_pressure = std::min(a.yield_pressure.value_or(infinity), b.yield_pressure.value_or(infinity));
   return pair;
 }
 
@@ -54,6 +58,7 @@ Materials::Materials(Options& options) {
       if (given.restitution) pairs_[k].restitution = *given.restitution;
       if (given.friction) pairs_[k].friction = *given.friction;
       if (given.rolling_friction) pairs_[k].rolling_friction = *given.rolling_friction;
+      if (given.yield_pressure) pairs_[k].yield_pressure = *given.yield_pressure;
     }
   }
 }

@@ -13,6 +13,7 @@ struct Material {
   std::optional<double> density;
   double young_modulus = 1e7, poisson_ratio = 0.3;
   double restitution = 0.9, friction = 0.3, rolling_friction = 0;
+  std::optional<double> yield_pressure;
   void options(OptionGroup& option) {
     option("density", density, "kg/m3", "density of the material; has no default", positive);
     option("young_modulus", young_modulus, "Pa", "Young's modulus E", positive);
@@ -20,16 +21,19 @@ struct Material {
     option("restitution", restitution, "-", "normal coefficient of restitution e", Range{0, 1, true, false});
     option("friction", friction, "-", "Coulomb friction coefficient mu", non_negative);
     option("rolling_friction", rolling_friction, "-", "rolling friction coefficient mu_r", non_negative);
+    option("yield_pressure", yield_pressure, "Pa",
+           "contact pressure at yield p_y (normal law thornton); default: elastic", positive);
   }
 };
 
 /// The options `-pair_<a>_<b>_...`: what overrides the mean of two materials.
 struct PairOverride {
-  std::optional<double> restitution, friction, rolling_friction;
+  std::optional<double> restitution, friction, rolling_friction, yield_pressure;
   void options(OptionGroup& option) {
     option("restitution", restitution, "-", "normal coefficient of restitution of this pair", Range{0, 1, true, false});
     option("friction", friction, "-", "Coulomb friction coefficient of this pair", non_negative);
     option("rolling_friction", rolling_friction, "-", "rolling friction coefficient of this pair", non_negative);
+    option("yield_pressure", yield_pressure, "Pa", "contact pressure at yield of this pair", positive);
   }
 };
 
@@ -37,7 +41,9 @@ struct PairOverride {
 struct PairProperties {
   double effective_young;  ///< Pa, 1/E_eff = (1-s_i^2)/E_i + (1-s_j^2)/E_j (7.13)
   double effective_shear;  ///< Pa, 1/G_eff = (2-s_i)/G_i + (2-s_j)/G_j (7.35)
+  double poisson_ratio;    ///< mean
   double restitution, friction, rolling_friction;
+  double yield_pressure;  ///< Pa, the smaller; infinity where both are elastic
 };
 
 /// All materials of the run and the properties of every pair of them.

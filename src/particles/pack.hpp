@@ -80,6 +80,23 @@ SILT_INLINE unsigned lane_bits(Mask a) {
 }
 #endif
 
+// Lane by lane: only the rarer laws use them, and so each lane gets the bits of the same formula in plain numbers.
+SILT_INLINE Pack cbrt(Pack a) {
+  Vector r;
+  for (int k = 0; k < lanes; ++k) r[k] = __builtin_cbrt(a.v[k]);
+  return r;
+}
+SILT_INLINE Pack exp(Pack a) {
+  Vector r;
+  for (int k = 0; k < lanes; ++k) r[k] = __builtin_exp(a.v[k]);
+  return r;
+}
+SILT_INLINE Pack log(Pack a) {
+  Vector r;
+  for (int k = 0; k < lanes; ++k) r[k] = __builtin_log(a.v[k]);
+  return r;
+}
+
 /// Reads one quad of doubles (at offset `at` doubles) from the record of each lane and turns the rows into columns.
 SILT_INLINE void load_columns(const double* base, int stride, int at, const int* index, Pack* column) {
   const auto row = [&](int k) {

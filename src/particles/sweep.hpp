@@ -11,7 +11,7 @@ struct alignas(64) Load {
   double torque[4];
 };
 
-/// One of the three laws of a contact, as the sweep sees it: its place in its list of models (contact_models.hpp) and
+/// One of the laws of a contact, as the sweep sees it: its place in its list of models (contact_models.hpp) and
 /// its constants for every pair of materials.
 struct LawStage {
   int model = 0;
@@ -21,9 +21,10 @@ struct LawStage {
 
 /// The laws of all contacts of a run.
 struct LawSetup {
-  LawStage normal, tangential, rolling;
+  LawStage normal, tangential, rolling, twisting;
   int materials = 1;
-  double leave_gap = 0;  ///< m, a contact ends when the surfaces are further apart than this
+  bool extended = false;  ///< a law reads the extended fields of Contact
+  double leave_gap = 0;   ///< m, a contact ends when the surfaces are further apart than this
 };
 
 /// Touching pairs: indices, and the history as one array per component. Padded to whole packs with the dummy pair.

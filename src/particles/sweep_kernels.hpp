@@ -1,5 +1,5 @@
 // The loops of sweep.hpp, compiled once per instruction set by sweep_plain.cpp, sweep_avx2.cpp, sweep_avx512.cpp.
-// Contacts run in blocks through short loops, kinematics -> normal -> tangential -> rolling law -> scatter, with
+// Contacts run in blocks through short loops, kinematics -> laws, one after the other -> scatter, with
 // buffers that stay in the first-level cache: each loop fits the processor's reorder buffer, and each law is chosen
 // once a block.
 #pragma once
@@ -17,7 +17,7 @@ SILT_INLINE void nearest_image(const Periods& periods, Pack* distance) {
 }
 
 /// Kinematics of `count` pairs, once for particles, ghosts and periodic images.
-template <bool periodic, bool spins, bool several>
+template <bool periodic, bool extended, bool several>
 SILT_INLINE void pair_kinematics(PairSweep& sweep, Block& block, int first, int count) {
   const double* motion = reinterpret_cast<const double*>(sweep.motion);
   constexpr int stride = sizeof(Motion) / sizeof(double);
@@ -63,7 +63,12 @@ SILT_INLINE void pair_kinematics(PairSweep& sweep, Block& block, int first, int 
     for (int d = 0; d < 3; ++d) {
       store(&block.normal[d][o], contact.normal[d]);
       store(&block.slip[d][o], contact.slip[d]);
-      if constexpr (spins) store(&block.spin[d][o], wi[d] - wj[d]);
+      if constexpr (extended) store(&block.spin[d][o], wi[d] - wj[d]);
+    }
+    if constexpr (extended) {
+      store(&block.radius[o], xi[3]);
+      store(&block.distance[o], r);
+      store(&block.rolling_inertia[o], Pack(1.4) / (vi[3] / (xi[3] * xi[3]) + vj[3] / (xj[3] * xj[3])));
     }
     store(&block.overlap[o], contact.overlap);
     store(&block.approach[o], contact.approach);
@@ -83,7 +88,7 @@ SILT_INLINE void pair_kinematics(PairSweep& sweep, Block& block, int first, int 
 }
 
 /// Adds the contacts' forces to both partners; one contact after the other, as a particle may occur more than once.
-template <bool rolls>
+template <bool extended>
 SILT_INLINE void pair_scatter(const PairSweep& sweep, const Block& block, int first, int count) {
   for (int o = 0; o < count; o += 4) {
     Quad force[3], couple[3], row_f[4], row_i[4], row_j[4];
@@ -95,7 +100,7 @@ SILT_INLINE void pair_scatter(const PairSweep& sweep, const Block& block, int fi
     couple[2] = force[0] * ny - force[1] * nx;
     const Quad arm_i = quad(&block.arm_i[o]), arm_j = quad(&block.arm_j[o]);
     rows_of(force[0], force[1], force[2], row_f);
-    if constexpr (rolls) {
+    if constexpr (extended) {
       const Quad mx = quad(&block.torque[0][o]), my = quad(&block.torque[1][o]), mz = quad(&block.torque[2][o]);
       rows_of(arm_i * couple[0] + mx, arm_i * couple[1] + my, arm_i * couple[2] + mz, row_i);
       rows_of(arm_j * couple[0] - mx, arm_j * couple[1] - my, arm_j * couple[2] - mz, row_j);
@@ -114,7 +119,7 @@ SILT_INLINE void pair_scatter(const PairSweep& sweep, const Block& block, int fi
   }
 }
 
-template <bool periodic, bool rolls, bool several>
+template <bool periodic, bool extended, bool several>
 void pair_blocks(PairSweep& sweep) {
   Block block;
   const Laws laws(sweep.laws);
@@ -122,26 +127,25 @@ void pair_blocks(PairSweep& sweep) {
   for (int first = 0; first < pairs.count; first += block_size) {
     const int left = (pairs.count - first + 7) / 8 * 8;  // the lists are padded to 8
     const int count = left < block_size ? left : block_size;
-    pair_kinematics<periodic, rolls, several>(sweep, block, first, count);
-    laws.run(block, sweep.laws, pairs.history + first, pairs.stride, count, sweep.dt);
-    pair_scatter<rolls>(sweep, block, first, count);
+    pair_kinematics<periodic, extended, several>(sweep, block, first, count);
+    laws.run(block, pairs.history + first, pairs.stride, count, sweep.dt);
+    pair_scatter<extended>(sweep, block, first, count);
   }
 }
 
-template <bool periodic, bool roll>
+template <bool periodic, bool extended>
 SILT_INLINE void choose_several(PairSweep& sweep) {
-  sweep.laws.materials > 1 ? pair_blocks<periodic, roll, true>(sweep) : pair_blocks<periodic, roll, false>(sweep);
+  sweep.laws.materials > 1 ? pair_blocks<periodic, extended, true>(sweep)
+                           : pair_blocks<periodic, extended, false>(sweep);
 }
 template <bool periodic>
-SILT_INLINE void choose_rolls(PairSweep& sweep) {
-  const RollingModels* models = nullptr;
-  rolls(models, sweep.laws.rolling.model) ? choose_several<periodic, true>(sweep)
-                                          : choose_several<periodic, false>(sweep);
+SILT_INLINE void choose_extended(PairSweep& sweep) {
+  sweep.laws.extended ? choose_several<periodic, true>(sweep) : choose_several<periodic, false>(sweep);
 }
 void pair_sweep(PairSweep& sweep) {
   sweep.leaving_count = 0;
   sweep.too_deep = -1;
-  sweep.periods.any ? choose_rolls<true>(sweep) : choose_rolls<false>(sweep);
+  sweep.periods.any ? choose_extended<true>(sweep) : choose_extended<false>(sweep);
 }
 
 template <bool periodic>
@@ -199,11 +203,14 @@ void wall_sweep(WallSweep& sweep) {
       block.approach[o] = contact.approach;
       block.effective_radius[o] = particle.radius;
       block.effective_mass[o] = 1 / particle.inverse_mass;
+      block.radius[o] = particle.radius;
+      block.distance[o] = point.distance;
+      block.rolling_inertia[o] = 1.4 * particle.radius * particle.radius / particle.inverse_mass;
       block.arm_i[o] = point.distance;
       block.pair[o] = particle.material * sweep.laws.materials + point.material;
       for (int d = 0; d < 3; ++d) block.torque[d][o] = 0;
     }
-    laws.run(block, sweep.laws, sweep.history + first, sweep.stride, padded, sweep.dt);
+    laws.run(block, sweep.history + first, sweep.stride, padded, sweep.dt);
     for (int o = 0; o < count; ++o) {
       const WallPoint& point = sweep.points[first + o];
       const double* x = sweep.motion[point.particle].position;

@@ -30,13 +30,14 @@ StepLimit limit_step(const ParticleOptions& options, const Materials& materials,
     for (int b = 0; b < materials.count(); ++b) {
       // Any material may be that of a wall, which is as a partner of infinite mass and radius.
       const double other = smallest.radius[b] < infinity ? smallest.radius[b] : infinity;
-      double share = 1, radii = radius;
+      double share = 1, radii = radius, distance = radius;
       if (other < infinity) {
         const double other_mass = *materials[b].density * 4.0 / 3.0 * std::numbers::pi * other * other * other;
         share = other_mass / (mass + other_mass);
         radii = radius * other / (radius + other);
+        distance = radius + other;
       }
-      const double duration = laws.duration(a, b, share * mass, radii, speed);
+      const double duration = laws.duration(a, b, {share * mass, radii, distance, speed});
       lower(options.step_fraction * duration,
             fmt::format("{:.3g} of the collision time {:.3g} s of {} with {}{}", options.step_fraction, duration,
                         material.name, materials[b].name,

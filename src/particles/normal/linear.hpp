@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "base/options.hpp"
+#include "base/models.hpp"
 #include "particles/contact.hpp"
 #include "particles/materials.hpp"
 #include "particles/normal/normal_load.hpp"
@@ -17,7 +17,10 @@ namespace silt {
 /// e = exp(-pi gamma / (2 m_eff w)), t_n = pi/w, w^2 = k/m_eff - (gamma/(2 m_eff))^2.
 struct Linear {
   static constexpr const char* name = "linear";
-  static constexpr bool hertzian = false;
+  static constexpr ModelNote note{"(7.7-7.10)", "Tsuji et al. 1993; Schafer et al. 1996",
+                                  "F = k x + gamma dx/dt; k and gamma, or the restitution e with k or the contact time",
+                                  "restitution and contact time as given, to second order in the step"};
+  static constexpr bool extended = false, hertzian = false, hertz_spring = false;
   std::optional<double> stiffness, damping, contact_time;
   bool no_attraction = false;
 
@@ -67,6 +70,7 @@ struct Linear {
     const Real zero(0.0), overlap = larger(contact.overlap, zero);
     const Real k = c.stiffness + c.stiffness_per_mass * contact.effective_mass;
     const Real damping = c.damping + c.damping_ratio * sqrt(k * contact.effective_mass);
+    load.stiffness = k;
     load.damping = select(overlap > zero, damping, zero);
     const Real force = larger(k * overlap + load.damping * contact.approach, c.least_force);
     load.force = select(overlap > zero, force, zero);
@@ -74,13 +78,13 @@ struct Linear {
     return load;
   }
 
-  /// Duration of a collision (7.9). s
-  static double duration(const Constants<double>& c, double mass, double /*radius*/, double /*speed*/) {
-    const double k = c.stiffness + c.stiffness_per_mass * mass;
-    const double gamma = c.damping + c.damping_ratio * std::sqrt(k * mass);
-    const double square = k / mass - gamma * gamma / (4 * mass * mass);
+  /// (7.9)
+  static double duration(const Constants<double>& c, const Encounter& e) {
+    const double k = c.stiffness + c.stiffness_per_mass * e.mass;
+    const double gamma = c.damping + c.damping_ratio * std::sqrt(k * e.mass);
+    const double square = k / e.mass - gamma * gamma / (4 * e.mass * e.mass);
     // An overdamped contact never swings back; its fastest rate is then what the step must resolve.
-    return square > 0 ? std::numbers::pi / std::sqrt(square) : std::numbers::pi * mass / gamma;
+    return square > 0 ? std::numbers::pi / std::sqrt(square) : std::numbers::pi * e.mass / gamma;
   }
 };
 

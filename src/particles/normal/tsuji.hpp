@@ -2,10 +2,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/options.hpp"
+#include "base/models.hpp"
 #include "particles/contact.hpp"
 #include "particles/materials.hpp"
-#include "particles/normal/normal_load.hpp"
+#include "particles/normal/hertz.hpp"
 
 namespace silt {
 
@@ -14,7 +14,15 @@ namespace silt {
 /// -sqrt(5) ln e / sqrt(ln^2 e + pi^2), Antypov & Elliott 2011.
 struct Tsuji {
   static constexpr const char* name = "tsuji";
-  static constexpr bool hertzian = true;
+  static constexpr ModelNote note{
+      "(7.12), (7.16)", "Tsuji et al. 1992; Antypov & Elliott 2011",
+      "F = k x^1.5 + gamma x^0.25 dx/dt, k = 4/3 E_eff sqrt(R_eff), gamma = alpha sqrt(m_eff k), alpha = -sqrt(5) ln e "
+      "/ "
+      "sqrt(ln^2 e + pi^2)",
+      "restitution e at any speed; elastic limit: largest overlap (5 m_eff v^2/(4 k))^(2/5), duration 2.943 x_max/v"};
+  static constexpr bool extended = false;
+  static constexpr bool hertzian = true;      ///< waves in the particles limit the step
+  static constexpr bool hertz_spring = true;  ///< the spring is 4/3 E_eff sqrt(R_eff) x^1.5, which JKR and DMT build on
   bool no_attraction = false;
   void options(OptionGroup& option) {
     option("no_attraction", no_attraction, "clip the attractive last part of a damped collision");
@@ -42,16 +50,15 @@ struct Tsuji {
     const Real zero(0.0), overlap = larger(contact.overlap, zero);
     load.contact_radius = sqrt(contact.effective_radius * overlap);
     const Real stiffness = c.stiffness * load.contact_radius;  // k sqrt(x)
+    load.stiffness = Real(1.5) * stiffness;
     load.damping = c.damping * sqrt(contact.effective_mass * stiffness);
     const Real force = larger(stiffness * overlap + load.damping * contact.approach, c.least_force);
     load.force = select(overlap > zero, force, zero);
     return load;
   }
 
-  /// Duration of an elastic collision, 2.943 x_max / v with x_max = (5 m_eff v^2 / (4 k))^(2/5). s
-  static double duration(const Constants<double>& c, double mass, double radius, double speed) {
-    const double k = c.stiffness * std::sqrt(radius);
-    return speed > 0 ? 2.943275 * std::pow(1.25 * mass * speed * speed / k, 0.4) / speed : infinity;
+  static double duration(const Constants<double>& c, const Encounter& e) {
+    return hertz_duration(c.stiffness * std::sqrt(e.radius), e.mass, e.speed);
   }
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "base/options.hpp"
+#include "base/models.hpp"
 #include "particles/contact.hpp"
 #include "particles/materials.hpp"
 #include "particles/normal/normal_load.hpp"
@@ -9,7 +9,8 @@ namespace silt {
 /// No rolling resistance.
 struct NoRolling {
   static constexpr const char* name = "none";
-  static constexpr bool acts = false;
+  static constexpr ModelNote note{"", "", "M = 0", "spin about the contact is kept"};
+  static constexpr bool extended = false;
   void options(OptionGroup&) {}
   template <class Real>
   struct Constants {};

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 
-#include "base/options.hpp"
+#include "base/models.hpp"
 #include "particles/materials.hpp"
 #include "particles/tangential/tangential_load.hpp"
 
@@ -13,6 +13,12 @@ namespace silt {
 /// that is gamma_t = 2 sqrt(G_eff/E_eff) gamma_n with the Hertz family.
 struct Mindlin {
   static constexpr const char* name = "mindlin";
+  static constexpr ModelNote note{
+      "(7.34-7.36)", "Mindlin & Deresiewicz 1953; Tsuji et al. 1992",
+      "F_t = -(k_t zeta + gamma_t V_t), at most mu |F_n|; k_t = 8 G_eff sqrt(R_eff x), gamma_t = 2 sqrt(G_eff/E_eff) "
+      "gamma",
+      "Chung & Ooi's oblique impacts; a sliding ball rolls at 5/7 of its speed after 2/7 v/(mu g)"};
+  static constexpr bool extended = false;
   std::optional<double> damping_ratio;
   void options(OptionGroup& option) {
     option("damping_ratio", damping_ratio, "-", "gamma_t/gamma_n; default: from the restitution", non_negative);

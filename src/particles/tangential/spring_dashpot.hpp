@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "base/options.hpp"
+#include "base/models.hpp"
 #include "particles/materials.hpp"
 #include "particles/tangential/tangential_load.hpp"
 
@@ -11,6 +11,10 @@ namespace silt {
 /// Constant spring and dashpot with the Coulomb limit (7.33), Cundall & Strack 1979.
 struct SpringDashpot {
   static constexpr const char* name = "spring_dashpot";
+  static constexpr ModelNote note{"(7.33), (7.36)", "Cundall & Strack 1979",
+                                  "F_t = -(k_t zeta + gamma_t V_t), at most mu |F_n|; at the limit zeta is cut back",
+                                  "frequency and decay of a stuck contact"};
+  static constexpr bool extended = false;
   std::optional<double> stiffness, damping;
   double damping_ratio = 0.5;
   void options(OptionGroup& option) {

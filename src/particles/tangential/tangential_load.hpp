@@ -21,8 +21,12 @@ SILT_INLINE void turn_into_plane(Real* spring, const Real* normal) {
 /// k/m_eff the share 1/2 + (w dt)^2/4 would be neutral; twice that excess leaves a damping of third order, also where
 /// several contacts hold a particle.
 template <class Real>
+SILT_INLINE Real share_of_step(Real square) {  // of w dt
+  return smaller(Real(0.5) + Real(0.5) * square, Real(1.0));
+}
+template <class Real>
 SILT_INLINE Real share_of_step(Real stiffness, Real mass, Real dt) {
-  return smaller(Real(0.5) + Real(1.75) * stiffness * dt * dt / mass, Real(1.0));
+  return share_of_step(Real(3.5) * stiffness * dt * dt / mass);
 }
 
 /// Spring k and dashpot gamma with the Coulomb limit (7.33): force = -(k zeta + gamma V_t), cut to mu |F_n| in length;

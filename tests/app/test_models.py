@@ -1,0 +1,34 @@
+#!/usr/bin/env python3
+# labels: fast
+"""`silt -models` lists every law by slot, name, equation and source; a law of the chapter that is missing fails."""
+import subprocess
+import sys
+
+# Laws that must be there, by slot.
+LAWS = {
+    "normal": "linear lee_herrmann kuwabara_kono tsuji walton_braun thornton",
+    "tangential": "viscous spring spring_dashpot mindlin walton_braun",
+    "twisting": "none twisting",
+    "rolling": "none spring viscous_coulomb constant epsd",
+    "drag": "stokes_cunningham schiller_naumann di_felice haider_levenspiel gidaspow ergun wen_yu beetstra koch_hill rong tang mazza",
+}
+# Slots whose laws must name the paper they come from, `none` apart.
+SOURCED = ("normal", "tangential", "twisting", "rolling")
+
+
+def main():
+    text = subprocess.run([sys.argv[1], "-models"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, check=True).stdout
+    there = {}
+    for line in text.splitlines():
+        slot, name, rest = line.split(None, 2)
+        there[slot, name] = rest
+    missing = [f"{slot} {name}" for slot, names in LAWS.items() for name in names.split() if (slot, name) not in there]
+    nameless = [f"{slot} {name}" for (slot, name), rest in there.items() if slot in SOURCED and name != "none" and not any(c.isdigit() for c in rest)]
+    for what, laws in (("not in -models", missing), ("without a source", nameless)):
+        for law in laws:
+            print(f"{law} is {what}")
+    return 1 if missing or nameless else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

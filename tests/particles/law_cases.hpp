@@ -1,0 +1,65 @@
+#pragma once
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "particles/contact_laws.hpp"
+
+namespace silt {
+
+/// The options that select a law of a slot and give it what it needs; the same for all tests over the lists of models.
+inline std::vector<std::pair<std::string, std::string>> law_options(const std::string& slot, const std::string& name) {
+  using Given = std::vector<std::pair<std::string, std::string>>;
+  static const std::map<std::string, Given> needs = {
+      {"normal linear", {{"normal_stiffness", "1e4"}}},
+      {"normal lee_herrmann", {{"normal_damping", "0.02"}}},
+      {"normal kuwabara_kono", {{"normal_relaxation_time", "1e-6"}}},
+      {"normal walton_braun", {{"normal_stiffness", "1e4"}}},
+      {"normal thornton", {{"material_bead_yield_pressure", "2e5"}}},
+      {"tangential spring_dashpot", {{"tangential_stiffness", "3e3"}}},
+      {"tangential spring", {{"tangential_stiffness", "3e3"}}},
+      {"tangential viscous", {{"tangential_damping", "0.01"}}},
+      {"rolling spring", {{"rolling_stiffness", "1e-3"}, {"rolling_damping", "1e-9"}}},
+      {"rolling viscous_coulomb", {{"rolling_damping", "1e-10"}}},
+  };
+  Given given = {{slot + "_type", name}};
+  if (const auto found = needs.find(slot + " " + name); found != needs.end())
+    given.insert(given.end(), found->second.begin(), found->second.end());
+  return given;
+}
+
+/// Calls act(slot, name) for every law of every list.
+template <class Act>
+void each_law(Act&& act) {
+  for (const auto& name : NormalModels::names()) act("normal", name);
+  for (const auto& name : TangentialModels::names()) act("tangential", name);
+  for (const auto& name : RollingModels::names()) act("rolling", name);
+  for (const auto& name : TwistingModels::names()) act("twisting", name);
+}
+
+/// The laws of a case with one material, `bead`, and what the case adds.
+struct LawCase {
+  Options options;
+  LawCase() {
+    set("material_bead_density", "2500").set("material_bead_rolling_friction", "0.1");
+    set("material_bead_friction", "0.5").set("material_bead_restitution", "0.8");
+  }
+  LawCase& set(const std::string& name, const std::string& value) {
+    options.set(name, value);
+    return *this;
+  }
+  LawCase& choose(const std::string& slot, const std::string& name) {
+    for (const auto& [option, value] : law_options(slot, name)) set(option, value);
+    return *this;
+  }
+};
+
+/// The materials and laws of a case.
+struct LawRun {
+  explicit LawRun(LawCase setup) : materials(setup.options), laws(setup.options, materials) {}
+  Materials materials;
+  ContactLaws laws;
+};
+
+}  // namespace silt
