@@ -47,7 +47,7 @@ void Budget::start(const OutputDirectory& directory, const Fluid* fluid, Particl
     add_columns(columns, {"drag_on_fluid", "response_on_fluid", "pressure_on_fluid", "in_transit"});
     columns.insert(columns.end(), {"particle_volume", "deposited_volume"});
   }
-  table_ = CsvWriter(directory.path("ledger.csv"), columns);
+  table_ = directory.table("ledger.csv", columns);
   fluid_known_ = fluid == nullptr;
   if (particles) {
     particle_momentum_ = particles->momentum();

@@ -47,6 +47,7 @@ Options everything() {
   declare<BoundaryOptions>(options, "boundary_<name>");
   declare<WallBoundaryOptions>(options, "boundary_<name>");
   declare<WallOptions>(options, "walls");
+  declare<RigidWallOptions>(options, "wall_<name>");
   declare<Material>(options, "material_<name>");
   declare<PairOverride>(options, "pair_<a>_<b>");
   declare(options, "normal", NormalModels{}, "normal contact force");
@@ -59,6 +60,8 @@ Options everything() {
   declare(options, "drag", DragModels{}, "drag law");
   declare<CouplingOptions>(options, "coupling");
   declare<OutputOptions>(options, "output");
+  declare<CheckpointOptions>(options, "checkpoint");
+  declare<RestartOptions>(options, "");
   declare<ProbeOptions>(options, "probe_<name>");
   declare<LineOptions>(options, "line_<name>");
   declare<ProfileOptions>(options, "profile_<name>");

@@ -11,8 +11,8 @@ constexpr int columns = 10;
 }
 
 void Departures::start(const OutputDirectory& directory) {
-  table_ = CsvWriter(directory.path("removed.csv"), {"time", "id", "position_x", "position_y", "position_z",
-                                                     "velocity_x", "velocity_y", "velocity_z", "mass", "boundary"});
+  table_ = directory.table("removed.csv", {"time", "id", "position_x", "position_y", "position_z", "velocity_x",
+                                           "velocity_y", "velocity_z", "mass", "boundary"});
 }
 
 void Departures::record(const Moment& moment) {

@@ -102,8 +102,8 @@ std::vector<std::string> Diagnostics::columns() const {
 }
 
 void Diagnostics::start(const OutputDirectory& directory) {
-  table_ = CsvWriter(directory.path("diagnostics.csv"), columns_);
-  if (!boundary_columns_.empty()) boundary_table_ = CsvWriter(directory.path("boundaries.csv"), boundary_columns_);
+  table_ = directory.table("diagnostics.csv", columns_);
+  if (!boundary_columns_.empty()) boundary_table_ = directory.table("boundaries.csv", boundary_columns_);
 }
 
 void Diagnostics::sample(const Moment& moment, Quantities& quantities) {

@@ -17,6 +17,16 @@ Output::Output(const Mesh& mesh, Options& options, bool with_fluid, bool with_pa
 
 void Output::start(const std::string& record) {
   directory_->prepare(record);
+  open_series(record);
+}
+
+void Output::resume(const std::string& record, double time, const std::string& checkpoint) {
+  directory_->resume(record, time, checkpoint);
+  open_series(record);
+  last_ = time;
+}
+
+void Output::open_series(const std::string& record) {
   if (with_fluid_) fluid_ = std::make_unique<FluidSeries>(*directory_, mesh_, record);
   if (with_particles_) particles_ = std::make_unique<ParticleSeries>(*directory_, record);
 }

@@ -16,6 +16,9 @@ class Output {
   Output(const Mesh& mesh, Options& options, bool with_fluid, bool with_particles);
   /// Makes the directory, with `record` (the options of the run, YAML) in it. Collective.
   void start(const std::string& record);
+  /// As start(), for a run that goes on from a checkpoint of this time. Collective.
+  void resume(const std::string& record, double time, const std::string& checkpoint);
+  double last() const { return last_; }
   const OutputDirectory& directory() const { return *directory_; }
 
   /// First time of output after `time`, infinity when there is none but the end.
@@ -26,6 +29,7 @@ class Output {
   void write(const Moment& moment);
 
  private:
+  void open_series(const std::string& record);
   const Mesh& mesh_;
   bool with_fluid_, with_particles_;
   std::unique_ptr<OutputDirectory> directory_;

@@ -81,8 +81,8 @@ void Probes::start(const OutputDirectory& directory) {
   std::vector<std::string> head = {"time"}, line_head = {"time", "distance", "x", "y", "z"};
   head.insert(head.end(), columns_.begin(), columns_.end());
   line_head.insert(line_head.end(), columns_.begin(), columns_.end());
-  for (auto& probe : probes_) probe.table = CsvWriter(directory.path("probe_" + probe.name + ".csv"), head);
-  for (auto& line : lines_) line.table = CsvWriter(directory.path("line_" + line.name + ".csv"), line_head);
+  for (auto& probe : probes_) probe.table = directory.table("probe_" + probe.name + ".csv", head);
+  for (auto& line : lines_) line.table = directory.table("line_" + line.name + ".csv", line_head);
 }
 
 void Probes::sample(const Moment& moment, Quantities& quantities) {

@@ -64,10 +64,17 @@ Simulation::Simulation(Options& options) : options_(options) {
   options.read("mesh", mesh);
   mesh_ = std::make_unique<Mesh>(mesh);
   refuse_unknown_boundaries(*mesh_, options);
+  checkpoint_ = std::make_unique<Checkpoint>(options);
+  restart_ = Checkpoint::open(options);
   fluid_ = Fluid::create(*mesh_, options, case_.gravity);
-  particles_ = Particles::create(*mesh_, options, case_.gravity);
+  particles_ = Particles::create(*mesh_, options, case_.gravity, restart_ != nullptr);
   if (!fluid_ && !particles_)
     throw UserError("there is neither a fluid (-fluid_type) nor a particle (-insertion_<name>_...) to run");
+  if (restart_) {
+    if ((restart_->number("has_particles") != 0) != (particles_ != nullptr))
+      restart_->refuse(particles_ ? "has no particles, this case has some" : "has particles, this case has none");
+    if (particles_) particles_->load(*restart_);
+  }
   if (fluid_ && particles_)
     coupling_ = std::make_unique<Coupling>(*mesh_, *particles_, *fluid_, options, case_.gravity);
   const bool flow = fluid_ != nullptr, grains = particles_ != nullptr;
@@ -76,7 +83,9 @@ Simulation::Simulation(Options& options) : options_(options) {
   probes_ = std::make_unique<Probes>(*mesh_, options, fluid_.get());
   profiles_ = std::make_unique<Profiles>(*mesh_, options, grains);
   budget_ = std::make_unique<Budget>(options, flow, grains);
+  walls_ = std::make_unique<WallTable>(particles_.get());
   auto through_time = diagnostics_->columns(), along_lines = probes_->line_columns();
+  for (const auto& column : walls_->columns()) through_time.push_back(column);
   for (const auto& column : probes_->columns()) through_time.push_back(column);
   for (const auto& column : profiles_->columns()) along_lines.push_back(column);
   expectations_ = std::make_unique<Expectations>(options, through_time, along_lines);
@@ -85,6 +94,10 @@ Simulation::Simulation(Options& options) : options_(options) {
   options.refuse_unknown(&catalogue());
   now_.fluid = fluid_.get();
   now_.particles = particles_.get();
+  if (!restart_) return;
+  const RunClock clock = Checkpoint::load(*restart_, {*mesh_, fluid_.get(), particles_.get(), coupling_.get()});
+  now_.time = clock.time, now_.dt = clock.dt, now_.step = clock.step;
+  shortened_ = clock.shortened;
 }
 
 std::string Simulation::description() const {
@@ -117,22 +130,26 @@ int Simulation::run() {
     choose_step();
     step();
     report();
+    if (checkpoint_->due(now_.time)) write_checkpoint("checkpoint.h5");
   }
   finish();
   return expectations_->judge(output_->directory(), *probes_, *profiles_) ? 0 : 1;
 }
 
 void Simulation::start() {
-  output_->start(record_of(options_));
+  restart_ ? output_->resume(record_of(options_), now_.time, restart_->path()) : output_->start(record_of(options_));
   progress_->header(description());
-  if (particles_) particles_->settle();
-  if (coupling_) coupling_->start();
+  if (particles_ && !restart_) particles_->settle();
+  if (coupling_ && !restart_) coupling_->start();
+  checkpoint_->start(now_.time);
   diagnostics_->start(output_->directory());
   probes_->start(output_->directory());
   budget_->start(output_->directory(), fluid_.get(), particles_.get());
   if (particles_) departures_.start(output_->directory());
+  walls_->start(output_->directory());
   progress_->start(now_.time, time_options_.end);
-  report();
+  if (!restart_) report();
+  restart_.reset();
 }
 
 /// The step asked for, shortened by the Courant target and a failed solve, so that output times and the end are met.
@@ -153,28 +170,57 @@ void Simulation::choose_step() {
   dt_ = left / std::max(1.0, std::ceil(left / longest * (1 - 1e-9)));
 }
 
+/// Remembers the state before a step. Without a fluid, which may ask to go back, not before every short one.
+void Simulation::keep_state() {
+  fluid_moved_ = false;
+  constexpr int worth_a_copy = 200;
+  if (particles_ && !fluid_ && good_.particles && substeps_since_good_ < worth_a_copy) return;
+  if (particles_) good_.particles = particles_->snapshot();
+  good_.clock = {now_.time, now_.dt, shortened_, now_.step};
+  substeps_since_good_ = 0;
+}
+
 /// Takes one step; when the fluid cannot, both phases go back to its start and a shorter one is tried.
 void Simulation::step() {
-  std::shared_ptr<const Particles::Snapshot> before;
-  if (fluid_ && particles_) before = particles_->snapshot();
+  keep_state();
   for (;;) {
     try {
       attempt();
+      substeps_since_good_ += now_.particle_step.substeps;
       return;
     } catch (const SolveFailure& failure) {
       dt_ *= 0.5;
       shortened_ = dt_;
-      if (dt_ < time_options_.least_step) {
-        if (particles_) particles_->restore(*before);
-        output_->write(now_);
-        throw RunError(fmt::format(
-            "the step at t = {:g} s failed down to {:g} s (-time_least_step): {}; the last good state is written",
-            now_.time, 2 * dt_, failure.what()));
-      }
+      if (dt_ < time_options_.least_step)
+        throw RunError(fmt::format("the step at t = {:g} s failed down to {:g} s (-time_least_step): {}{}", now_.time,
+                                   2 * dt_, failure.what(), save_last_good()));
       progress_->line(fmt::format("t = {:g} s: {}; trying a step of {:g} s", now_.time, failure.what(), dt_));
-      if (particles_) particles_->restore(*before);
+      if (particles_) particles_->restore(*good_.particles);
+    } catch (const RunError& error) {
+      throw RunError(error.what() + save_last_good());
     }
   }
+}
+
+std::string Simulation::save_last_good() {
+  if (fluid_moved_) return "";
+  try {
+    if (particles_) particles_->restore(*good_.particles);
+    now_.time = good_.clock.time, now_.dt = good_.clock.dt, now_.step = good_.clock.step;
+    shortened_ = good_.clock.shortened;
+    if (now_.time > output_->last()) output_->write(now_);
+    write_checkpoint("last_good.h5");
+  } catch (const RunError& error) {
+    return fmt::format("; the last good state could not be written: {}", error.what());
+  }
+  return fmt::format("; the last good state, t = {:.6g} s, is in {} (-restart)", now_.time,
+                     output_->directory().path("last_good.h5"));
+}
+
+void Simulation::write_checkpoint(const std::string& file) {
+  const Stopwatch watch(*this, writing);
+  Checkpoint::write(output_->directory().path(file), {*mesh_, fluid_.get(), particles_.get(), coupling_.get()},
+                    {now_.time, now_.dt, shortened_, now_.step});
 }
 
 /// Particles first, with the flow of the step's start; then the flow, with what they did to it; then the account is
@@ -195,6 +241,7 @@ void Simulation::attempt() {
   if (fluid_) {
     const Stopwatch watch(*this, solving_fluid);
     now_.fluid_step = fluid_->advance(now_.time, dt_);
+    fluid_moved_ = true;
   }
   if (coupling_) {
     const Stopwatch watch(*this, exchanging);
@@ -214,6 +261,7 @@ void Simulation::report() {
   probes_->sample(now_, quantities);
   profiles_->sample(now_);
   departures_.record(now_);
+  walls_->sample(now_, quantities);
   expectations_->sample(now_.time, quantities);
   if (output_->due(now_.time) || now_.time >= time_options_.end * (1 - 1e-12)) {
     output_->write(now_);
@@ -224,6 +272,7 @@ void Simulation::report() {
 }
 
 void Simulation::finish() {
+  if (checkpoint_->wanted()) write_checkpoint("checkpoint.h5");
   progress_->finish(now_);
   double total = 0;
   for (double s : seconds_) total += s;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/budget.hpp"
+#include "app/checkpoint.hpp"
 #include "app/departures.hpp"
 #include "app/diagnostics.hpp"
 #include "app/expectations.hpp"
@@ -13,6 +14,7 @@
 #include "app/probes.hpp"
 #include "app/profiles.hpp"
 #include "app/progress.hpp"
+#include "app/wall_table.hpp"
 #include "base/mesh.hpp"
 #include "base/options.hpp"
 #include "coupling/coupling.hpp"
@@ -55,6 +57,10 @@ class Simulation {
   void step();
   void attempt();
   void report();
+  void write_checkpoint(const std::string& file);
+  void keep_state();
+  /// Goes back to the last good state, writes it and returns words about it for the error that ends the run.
+  std::string save_last_good();
   void finish();
   std::string description() const;
 
@@ -72,8 +78,21 @@ class Simulation {
   std::unique_ptr<Profiles> profiles_;
   std::unique_ptr<Budget> budget_;
   Departures departures_;
+  std::unique_ptr<WallTable> walls_;
   std::unique_ptr<Expectations> expectations_;
   std::unique_ptr<Progress> progress_;
+
+  std::unique_ptr<Checkpoint> checkpoint_;
+  std::unique_ptr<CheckpointReader> restart_;  ///< what the run goes on from; null for a fresh run
+
+  /// A state to go back to.
+  struct Good {
+    std::shared_ptr<const Particles::Snapshot> particles;
+    RunClock clock;
+  };
+  Good good_;
+  int substeps_since_good_ = 0;
+  bool fluid_moved_ = false;  ///< in the present attempt: there is no going back for the fluid
 
   Moment now_;
   double dt_ = 0;         ///< s, the coming step

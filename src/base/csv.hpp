@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,8 +10,10 @@ namespace silt {
 class CsvWriter {
  public:
   CsvWriter() = default;
-  /// Starts the file with its header line. Rank 0 writes; the others follow. Throws RunError on every rank. Collective.
-  CsvWriter(const std::string& path, const std::vector<std::string>& columns);
+  /// Starts the file with its header line. With `resumed`, a file of the same columns that is there goes on after its
+  /// rows up to that time (the first column). Rank 0 writes; the others follow. Throws RunError on every rank.
+  /// Collective.
+  CsvWriter(const std::string& path, const std::vector<std::string>& columns, std::optional<double> resumed = {});
   ~CsvWriter();
   CsvWriter(CsvWriter&& other) noexcept;
   CsvWriter& operator=(CsvWriter&& other) noexcept;

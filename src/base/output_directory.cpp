@@ -20,8 +20,8 @@ constexpr const char* record_name = "run.yaml";
 /// What a run writes into its directory: nothing else is ever removed.
 bool is_ours(const fs::path& relative) {
   static const std::regex pattern(
-      R"((run\.yaml|fluid\.xdmf|particles\.xdmf|(diagnostics|boundaries|ledger)\.csv|(removed|expectations)\.csv|)"
-      R"((probe|line|profile|wall)_.*\.csv|(fluid|particles)/(mesh|\d{6,})\.h5)(\.part)?)");
+      R"((run\.yaml|fluid\.xdmf|particles\.xdmf|(diagnostics|boundaries|ledger)\.csv|(removed|walls|expectations)\.csv|)"
+      R"((probe|line|profile|wall)_.*\.csv|(checkpoint|last_good)\.h5|(fluid|particles)/(mesh(_\d+)?|\d{6,})\.h5)(\.part)?)");
   return std::regex_match(relative.generic_string(), pattern);
 }
 
@@ -105,6 +105,27 @@ void OutputDirectory::prepare(const std::string& record) {
   } catch (const RunError& e) {
     throw UserError(e.what());
   }
+}
+
+void OutputDirectory::resume(const std::string& record, double time, const std::string& checkpoint) {
+  int there = 0;
+  if (mpi_rank() == 0) {
+    std::error_code code;
+    there = fs::exists(path(record_name), code) &&
+            fs::equivalent(fs::absolute(checkpoint).parent_path(), options_.directory, code);
+  }
+  MPI_Bcast(&there, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  if (!there) return prepare(record);
+  resumed_ = time;
+  try {
+    write_text(path(record_name), record);
+  } catch (const RunError& e) {
+    throw UserError(e.what());
+  }
+}
+
+CsvWriter OutputDirectory::table(const std::string& file, const std::vector<std::string>& columns) const {
+  return CsvWriter(path(file), columns, resumed_);
 }
 
 }  // namespace silt

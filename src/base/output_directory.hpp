@@ -1,6 +1,9 @@
 #pragma once
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "base/csv.hpp"
 #include "base/options.hpp"
 
 namespace silt {
@@ -27,6 +30,14 @@ class OutputDirectory {
   /// Makes the directory, removes an earlier run and writes `run.yaml`, the record of this run. Throws UserError on
   /// every rank. Collective.
   void prepare(const std::string& record);
+  /// As prepare(), for a run that goes on from a checkpoint of this time: where that lies in the directory, what its
+  /// run wrote up to then is kept and continued. Collective.
+  void resume(const std::string& record, double time, const std::string& checkpoint);
+  /// The time that the tables and series go on from; nothing for a fresh run.
+  std::optional<double> resumed() const { return resumed_; }
+  /// A table in the directory; one that is there is continued, without its rows after the time of resume(). Throws
+  /// RunError on every rank. Collective.
+  CsvWriter table(const std::string& file, const std::vector<std::string>& columns) const;
 
   /// The place of a file of ours.
   std::string path(const std::string& file) const { return options_.directory + "/" + file; }
@@ -36,6 +47,7 @@ class OutputDirectory {
  private:
   std::string obstacle() const;
   OutputOptions options_;
+  std::optional<double> resumed_;
 };
 
 }  // namespace silt

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <fstream>
 #include <numeric>
 
 #include "base/error.hpp"
@@ -69,6 +70,29 @@ void make_folder(const std::string& path) {
 
 }  // namespace
 
+SeriesIndex::SeriesIndex(std::string path, std::string name, std::optional<double> resumed)
+    : path_(std::move(path)), name_(std::move(name)) {
+  if (!resumed) return;
+  if (mpi_rank() == 0) {
+    std::ifstream file(path_);
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    const std::string first = "   <Grid Name=", last = "   </Grid>\n", time = "<Time Value=\"";
+    for (std::size_t at = text.find(first); at != std::string::npos; at = text.find(first, at)) {
+      const std::size_t end = text.find(last, at);
+      if (end == std::string::npos) break;
+      const std::string grid = text.substr(at, end + last.size() - at);
+      const std::size_t value = grid.find(time);
+      if (value != std::string::npos &&
+          std::strtod(grid.c_str() + value + time.size(), nullptr) <= *resumed * (1 + 1e-9) + 1e-300)
+        grids_.push_back(grid);
+      at = end;
+    }
+  }
+  int count = static_cast<int>(grids_.size());
+  MPI_Bcast(&count, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  grids_.resize(static_cast<std::size_t>(count));  // only rank 0 needs the text
+}
+
 std::string SeriesIndex::next_file() const { return fmt::format("{}/{:06d}.h5", name_, grids_.size()); }
 
 void SeriesIndex::add(double time, const std::string& body) {
@@ -89,9 +113,10 @@ void SeriesIndex::add(double time, const std::string& body) {
 FluidSeries::FluidSeries(const OutputDirectory& directory, const Mesh& mesh, const std::string& record)
     : mesh_(mesh),
       directory_(directory),
-      index_(directory.path("fluid.xdmf"), "fluid"),
+      index_(directory.path("fluid.xdmf"), "fluid", directory.resumed()),
       cellwise_(mesh.periodic[0] || mesh.periodic[1] || mesh.periodic[2]) {
   make_folder(directory.path("fluid"));
+  if (index_.count() > 0) mesh_file_ = fmt::format("fluid/mesh_{}.h5", index_.count());
   const int corners = mesh.nodes_per_cell;
   const auto order = xdmf_order(mesh.cell);
   std::vector<std::int64_t> cells;
@@ -109,7 +134,7 @@ FluidSeries::FluidSeries(const OutputDirectory& directory, const Mesh& mesh, con
   const std::vector<std::int64_t> ranks(mesh.cells, mpi_rank());
   std::vector<Attribute> notes;
   if (!record.empty()) notes.push_back({"options", record});
-  points_ = write_hdf5(directory.path("fluid/mesh.h5"),
+  points_ = write_hdf5(directory.path(mesh_file_),
                        {{"points", 3, points},
                         {"cells", corners, std::span<const std::int64_t>(cells)},
                         {"rank", 1, std::span<const std::int64_t>(ranks)}},
@@ -137,19 +162,20 @@ void FluidSeries::write(double time, const std::vector<NodeField>& fields) {
   write_hdf5(directory_.path(file), sets, {{"time", time}});
   std::string body =
       fmt::format("    <Topology TopologyType=\"{}\" NumberOfElements=\"{}\">{}</Topology>\n", xdmf_name(mesh_.cell),
-                  mesh_.total_cells,
-                  data_item("fluid/mesh.h5", "cells", mesh_.total_cells, mesh_.nodes_per_cell, true, 8)) +
+                  mesh_.total_cells, data_item(mesh_file_, "cells", mesh_.total_cells, mesh_.nodes_per_cell, true, 8)) +
       fmt::format("    <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
-                  data_item("fluid/mesh.h5", "points", points_, 3, false, 8));
+                  data_item(mesh_file_, "points", points_, 3, false, 8));
   for (const auto& set : sets)
     body += attribute(set.name, "Node", set.components,
                       data_item(file, set.name, points_, set.components, false, set.bytes()));
-  body += attribute("rank", "Cell", 1, data_item("fluid/mesh.h5", "rank", mesh_.total_cells, 1, true, 8));
+  body += attribute("rank", "Cell", 1, data_item(mesh_file_, "rank", mesh_.total_cells, 1, true, 8));
   index_.add(time, body);
 }
 
 ParticleSeries::ParticleSeries(const OutputDirectory& directory, std::string record)
-    : directory_(directory), index_(directory.path("particles.xdmf"), "particles"), record_(std::move(record)) {
+    : directory_(directory),
+      index_(directory.path("particles.xdmf"), "particles", directory.resumed()),
+      record_(std::move(record)) {
   make_folder(directory.path("particles"));
 }
 

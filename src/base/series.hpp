@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,7 +15,8 @@ namespace silt {
 /// one file an output. It is rewritten whole after each output, so that it names complete files only.
 class SeriesIndex {
  public:
-  SeriesIndex(std::string path, std::string name) : path_(std::move(path)), name_(std::move(name)) {}
+  /// With `resumed`, an index that is there goes on after its outputs up to that time. Collective.
+  SeriesIndex(std::string path, std::string name, std::optional<double> resumed = {});
   /// "fluid/000012.h5" of the output that comes next.
   std::string next_file() const;
   int count() const { return static_cast<int>(grids_.size()); }
@@ -48,6 +50,7 @@ class FluidSeries {
   const OutputDirectory& directory_;
   SeriesIndex index_;
   bool cellwise_;
+  std::string mesh_file_ = "fluid/mesh.h5";  ///< a run that went on has its mesh, perhaps in another order, in another
   long long points_ = 0;
 };
 

@@ -123,6 +123,16 @@ void Coupling::start() {
   std::copy(alpha.begin(), alpha.end(), fluid_.load().void_fraction.begin());
 }
 
+void Coupling::restored(double largest_diameter) {
+  if (largest_diameter > diameter_) {
+    diameter_ = largest_diameter;
+    filter_.reset();
+    prepare_filter();
+  }
+  const auto alpha = void_fraction_.previous();
+  std::copy(alpha.begin(), alpha.end(), fluid_.load().void_fraction.begin());
+}
+
 void Coupling::before_particles(double dt) {
   place_particles();
   const int count = particles_.owned();

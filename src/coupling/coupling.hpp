@@ -69,6 +69,12 @@ class Coupling {
   /// balance. Collective.
   void after_fluid(double dt);
 
+  /// What a restart needs beside fluid and particles: arrays at the nodes, and the largest diameter so far, by which
+  /// the automatic filter was made. restored() follows when they were overwritten. Collective.
+  std::vector<Fluid::StateArray> state() { return {{"void_fraction", &void_fraction_.state(), 1}}; }
+  double largest_diameter() const { return diameter_; }
+  void restored(double largest_diameter);
+
   /// The last step's exchange, complete after after_fluid().
   const ExchangeLedger& ledger() const { return ledger_; }
   /// One line for the header of the run: filter, drag law.

@@ -21,6 +21,8 @@ class VoidFraction {
   /// The step is done: its alpha is the start of the next.
   void commit(std::span<const double> alpha) { previous_.assign(alpha.begin(), alpha.end()); }
   std::span<const double> previous() const { return previous_; }
+  /// What a restart needs.
+  std::vector<double>& state() { return previous_; }
 
  private:
   void check(std::span<const double> alpha, double least) const;

@@ -50,11 +50,10 @@ struct Arms {
 ///   void points(const Motion* particles, double time, std::vector<WallPoint>& points) const;
 ///     every substep: the points nearer than the particle's radius, ordered by particle, in the same order on every
 ///     call with the same input. The engine carries the history of a point to the next step's point of the same
-///     particle and boundary whose normal is nearest to it, so facets need no key and rolling over an edge between them
-///     is smooth.
+///     particle whose normal is nearest to it, so facets need no key and rolling over an edge between them is smooth.
 struct WallPoint {
   int particle;        ///< local index
-  int boundary;        ///< which wall: index into Mesh::boundaries (forces are summed per wall)
+  int boundary;        ///< which wall: the boundaries of the mesh, then the rigid walls (forces are summed per wall)
   int material;        ///< index into Materials
   double distance;     ///< m, from the centre to the point; touching when below the radius
   double normal[3];    ///< unit vector from the wall to the centre

@@ -27,7 +27,7 @@ std::vector<std::string> names_of(const Materials& materials) {
 
 }  // namespace
 
-Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity)
+Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool empty)
     : mesh(on_mesh),
       materials(options),
       contacts(0),
@@ -51,12 +51,12 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity)
       periods_.inverse[d] = 1 / periods_.length[d];
       periods_.any = true;
     }
-  wall_force.assign(mesh.boundaries.size(), Vec3::Zero());
-  wall_torque = wall_force;
-  wall_force_sum_.assign(3 * mesh.boundaries.size() + 3, 0.0);
+  wall_force.assign(walls_.count(), Vec3::Zero());
+  wall_torque = wall_impulse = wall_turning = wall_force;
+  wall_force_sum_.assign(3 * walls_.count() + 3, 0.0);
   wall_torque_sum_ = wall_force_sum_;
   store.reserve(0);
-  const std::vector<Seed> seeds = make_insertions(walls_, options, names_of(materials));
+  const std::vector<Seed> seeds = make_insertions(walls_, options, names_of(materials), empty);
   if (!seeds.empty()) add(seeds);
 }
 
@@ -164,12 +164,15 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
     }
     impulses.removed -= leaving.mass * leaving.velocity;
     departed.push_back(leaving);
-    if (one.boundary < 0 || walls_.role(one.boundary) == BoundaryRole::wall) {
+    const bool open = one.boundary >= 0 && walls_.role(one.boundary) == BoundaryRole::open;
+    if (one.boundary < 0 || open || walls_.role(one.boundary) == BoundaryRole::wall) {
       ++lost;
       if (text.empty())
         text = fmt::format("lost {} has passed {}{}", describe(one.motion, one.id),
-                           one.boundary < 0 ? "no boundary" : "the wall ",
-                           one.boundary < 0 ? "" : mesh.boundaries[one.boundary]);
+                           one.boundary < 0 ? "no boundary"
+                           : open           ? "the open boundary "
+                                            : "the wall ",
+                           one.boundary < 0 ? "" : walls_.name(one.boundary));
     }
   }
   if (options_.lost == "stop")
@@ -289,7 +292,7 @@ void Engine::evaluate(double time, double dt) {
     const Motion& motion = store.motion[point.particle];
     if (motion.radius - point.distance > options_.overlap_limit * motion.radius)
       trouble_ = fmt::format("{} overlaps the wall {} by {:.4g} of its radius, limit {:g} (-particles_overlap_limit)",
-                             describe(motion, store.id[point.particle]), mesh.boundaries[point.boundary],
+                             describe(motion, store.id[point.particle]), walls_.name(point.boundary),
                              1 - point.distance / motion.radius, options_.overlap_limit);
   }
 }
@@ -312,6 +315,7 @@ Integration Engine::pass(double h) {
 }
 
 void Engine::start(double time) {
+  walls_.pose(time);
   rebuild(store.present, false, 0);
   for (int p = 0; p < store.all(); ++p) store.present[p] = Load{};
   trouble_.clear();
@@ -328,12 +332,17 @@ ParticleStep Engine::advance(double time, double dt) {
   ParticleStep result;
   departed.clear();
   rebuilds_ = 0;
+  wall_impulse.assign(walls_.count(), Vec3::Zero());
+  wall_turning = wall_impulse;
+  wall_time = dt;
   if (total == 0 || dt <= 0) return result;
   if (options_.fixed && !settling_) return hold(dt);
   if (!started_)
     start(time);
-  else if (detached_)
+  else if (detached_) {
+    walls_.pose(time);
     rebuild(store.present, false, 0);
+  }
   const int substeps = std::max(1, static_cast<int>(std::ceil(dt / limit.step * (1 - 1e-12))));
   const double h = dt / substeps;
   prepare_fluid(h);
@@ -350,7 +359,10 @@ ParticleStep Engine::advance(double time, double dt) {
     kernels_.integrate(step);
     store.present.swap(store.previous);
     if (!std::isfinite(step.check)) trouble_ = find_bad();
-    int state = !trouble_.empty() ? 2 : step.largest_square > 0.25 * skin_ * skin_ ? 1 : 0;
+    move_walls(time + s * h, h);
+    int state = !trouble_.empty()                                                            ? 2
+                : step.largest_square > 0.25 * skin_ * skin_ || walls_.moved() > 0.5 * skin_ ? 1
+                                                                                             : 0;
     if (!alone) MPI_Allreduce(MPI_IN_PLACE, &state, 1, MPI_INT, MPI_MAX, communicator_);
     if (state == 2) stop_if_any(trouble_);
     if (state == 1)
@@ -358,7 +370,9 @@ ParticleStep Engine::advance(double time, double dt) {
     else
       halo_.forward(store);
     const Vec3 before = wall_total_;
+    add_wall_impulses(0.5 * h);
     evaluate(time + (s + 1) * h, h);
+    add_wall_impulses(0.5 * h);
     impulses.walls += 0.5 * h * (before + wall_total_);
   }
   Integration step = pass(h);

@@ -46,13 +46,15 @@ struct Particles::Snapshot {
   long long total, removed;
   std::int64_t next_id;
   Vec3 wall_total;
+  std::vector<Vec3> wall_force, wall_torque;
+  std::vector<WallMotion::State> wall_states;
   bool started;
 };
 
 /// What is behind Particles: the parts of the particle solver and the loop over the substeps.
 class Engine {
  public:
-  Engine(const Mesh& mesh, Options& options, const Vec3& gravity);
+  Engine(const Mesh& mesh, Options& options, const Vec3& gravity, bool empty = false);
 
   void add(const std::vector<Seed>& seeds);
   ParticleStep advance(double time, double dt);
@@ -61,6 +63,9 @@ class Engine {
 
   std::shared_ptr<const Particles::Snapshot> snapshot() const;
   void restore(const Particles::Snapshot& snapshot);
+  void save(CheckpointWriter& to);
+  void load(const CheckpointReader& from);
+  void load_columns(const CheckpointReader& from);
 
   /// Momentum etc. that this rank's particles received since the last take_impulses().
   Particles::Impulses impulses;
@@ -72,7 +77,11 @@ class Engine {
   Materials materials;
   ContactLists contacts;
   WallContacts wall_contacts;
-  std::vector<Vec3> wall_force, wall_torque;  ///< of the last substep, on the particles, per boundary, this rank
+  std::vector<Vec3> wall_force, wall_torque;  ///< of the last substep, on the particles, per wall, this rank
+  /// N s, N m s about the origin: what each wall gave the particles in the last advance(), which lasted wall_time.
+  std::vector<Vec3> wall_impulse, wall_turning;
+  double wall_time = 0;
+  const Walls& walls() const { return walls_; }
 
  private:
   /// advance() of particles that are held.
@@ -83,6 +92,8 @@ class Engine {
   void rebuild(Aligned<Load>& carried, bool within_step, double h);
   void depart(const std::vector<Gone>& gone, bool within_step, double h);
   void evaluate(double time, double dt);
+  void move_walls(double time, double h);
+  void add_wall_impulses(double h);
   /// Takes the contacts' memories out of the lists, whose indices are about to change.
   void detach();
   /// Sums that change only when particles come or go.

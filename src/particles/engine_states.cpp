@@ -29,6 +29,7 @@ void Engine::settle(const SettleOptions& options) {
 
 ParticleStep Engine::hold(double dt) {
   if (!started_) start(0);  // they may not overlap more than others
+  if (detached_) rebuild(store.present, false, 0);
   Vec3 support = Vec3::Zero();
   for (int p = 0; p < store.owned; ++p) {
     FluidAction& action = store.action[p];
@@ -68,7 +69,7 @@ std::shared_ptr<const Particles::Snapshot> Engine::snapshot() const {
                           std::vector<Load>(store.present.data(), store.present.data() + n),
                           std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n), store.cell, store.action,
                           store.columns.save(n), std::move(memory), std::move(wall_memory), impulses, total, removed,
-                          next_id_, wall_total_, started_});
+                          next_id_, wall_total_, wall_force, wall_torque, walls_.states(), started_});
 }
 
 void Engine::restore(const Particles::Snapshot& saved) {
@@ -90,6 +91,9 @@ void Engine::restore(const Particles::Snapshot& saved) {
   removed = saved.removed;
   next_id_ = saved.next_id;
   wall_total_ = saved.wall_total;
+  wall_force = saved.wall_force;
+  wall_torque = saved.wall_torque;
+  walls_.set_states(saved.wall_states);
   started_ = saved.started;
   departed.clear();
   fluid_ = false;

@@ -15,14 +15,14 @@ struct Particles::Impl : Engine {
   SwarmStore swarm;
 };
 
-Particles::Particles(const Mesh& mesh, Options& options, const Vec3& gravity)
-    : impl_(std::make_unique<Impl>(mesh, options, gravity)) {
+Particles::Particles(const Mesh& mesh, Options& options, const Vec3& gravity, bool empty)
+    : impl_(std::make_unique<Impl>(mesh, options, gravity, empty)) {
   options.read("settle", impl_->settle_options);
 }
 
-std::unique_ptr<Particles> Particles::create(const Mesh& mesh, Options& options, const Vec3& gravity) {
+std::unique_ptr<Particles> Particles::create(const Mesh& mesh, Options& options, const Vec3& gravity, bool empty) {
   if (options.names("insertion", Options::declared<InsertionOptions>()).empty()) return nullptr;
-  return std::make_unique<Particles>(mesh, options, gravity);
+  return std::make_unique<Particles>(mesh, options, gravity, empty);
 }
 
 void Particles::settle() { impl_->settle(impl_->settle_options); }
@@ -49,6 +49,9 @@ FluidAction& Particles::fluid_action(int i) { return impl_->store.action[i]; }
 
 std::shared_ptr<const Particles::Snapshot> Particles::snapshot() const { return impl_->snapshot(); }
 void Particles::restore(const Snapshot& snapshot) { impl_->restore(snapshot); }
+void Particles::save(CheckpointWriter& to) { impl_->save(to); }
+void Particles::load(const CheckpointReader& from) { impl_->load(from); }
+void Particles::load_columns(const CheckpointReader& from) { impl_->load_columns(from); }
 DM Particles::swarm() { return impl_->swarm.refresh(impl_->mesh, impl_->store); }
 
 void Particles::kick(int i, const Vec3& impulse) {
@@ -102,6 +105,35 @@ Particles::Impulses Particles::take_impulses() {
   mine = {};
   return {vec3(values[0]), vec3(values[1]), vec3(values[2]), vec3(values[3]),
           vec3(values[4]), vec3(values[5]), vec3(values[6])};
+}
+
+std::vector<std::string> Particles::wall_names() const {
+  std::vector<std::string> names;
+  for (int w = 0; w < impl_->walls().count(); ++w) names.push_back(impl_->walls().name(w));
+  return names;
+}
+
+std::vector<Particles::WallLoad> Particles::wall_loads() const {
+  const Walls& walls = impl_->walls();
+  const int count = walls.count(), boundaries = static_cast<int>(walls.boundaries().size());
+  std::vector<double> sums(6 * static_cast<std::size_t>(count), 0.0);
+  for (std::size_t w = 0; w < impl_->wall_impulse.size() && impl_->wall_time > 0; ++w) {
+    vec3(&sums[6 * w]) = -impl_->wall_impulse[w] / impl_->wall_time;
+    vec3(&sums[6 * w + 3]) = -impl_->wall_turning[w] / impl_->wall_time;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  std::vector<WallLoad> loads(count);
+  for (int w = 0; w < count; ++w) {
+    loads[w].name = walls.name(w);
+    loads[w].force = vec3(&sums[6 * static_cast<std::size_t>(w)]);
+    loads[w].torque = vec3(&sums[6 * static_cast<std::size_t>(w) + 3]);
+    if (w < boundaries) continue;
+    const RigidWall& wall = walls.rigid()[w - boundaries];
+    loads[w].torque -= wall.reference().cross(loads[w].force);
+    loads[w].displacement = wall.motion().shift();
+    loads[w].angle = wall.motion().angle();
+  }
+  return loads;
 }
 
 }  // namespace silt

@@ -58,15 +58,18 @@ struct Departed {
 };
 
 class Materials;
+class CheckpointWriter;
+class CheckpointReader;
 
 /// The soft-sphere particles of this rank: those whose centre lies in a local cell.
 /// Indices are valid until the next advance() or add(); `id` is for ever.
 class Particles {
  public:
   /// The particles of a case, null when it inserts none. Collective.
-  static std::unique_ptr<Particles> create(const Mesh& mesh, Options& options, const Vec3& gravity);
+  /// `empty`: none is made at the start, they come from load().
+  static std::unique_ptr<Particles> create(const Mesh& mesh, Options& options, const Vec3& gravity, bool empty = false);
   /// Reads materials, contact laws and walls, and makes every `-insertion_<name>_...`. Collective.
-  Particles(const Mesh& mesh, Options& options, const Vec3& gravity);
+  Particles(const Mesh& mesh, Options& options, const Vec3& gravity, bool empty = false);
   ~Particles();
 
   /// Creates particles; the seeds are the same on every rank. Throws UserError for one outside the mesh. Collective.
@@ -97,6 +100,13 @@ class Particles {
   struct Snapshot;
   std::shared_ptr<const Snapshot> snapshot() const;
   void restore(const Snapshot& snapshot);
+  /// Adds the whole state to a checkpoint: motion, fluid action, contact memory, walls' motion, counters. Collective.
+  void save(CheckpointWriter& to);
+  /// Goes on from a checkpoint, on any number of ranks; with that of the run that wrote it, with the same bits. Throws
+  /// UserError for one of other materials, walls or contact laws. Collective.
+  void load(const CheckpointReader& from);
+  /// Then, once every model has asked for its columns, their values. Collective.
+  void load_columns(const CheckpointReader& from);
 
   /// The particles of this rank as a DMSWARM_BASIC with the fields id (long), position, velocity, spin (3), radius,
   /// mass, material (int), DMSwarm_rank, fluid_velocity (3), exchange, drag_impulse (3): as of this call, for output
@@ -129,6 +139,18 @@ class Particles {
          kicks = Vec3::Zero(), added = Vec3::Zero(), removed = Vec3::Zero();
   };
   Impulses take_impulses();
+
+  /// What the particles did to one wall, mean over the last advance(), and where the wall is.
+  struct WallLoad {
+    std::string name;  ///< of a boundary of the mesh, or of a rigid wall (after those)
+    Vec3 force = Vec3::Zero();
+    Vec3 torque = Vec3::Zero();  ///< N m, about the origin; of a rigid wall about its centre of rotation
+    Vec3 displacement = Vec3::Zero();
+    double angle = 0;  ///< rad
+  };
+  /// Of all walls, over all ranks. Collective.
+  std::vector<WallLoad> wall_loads() const;
+  std::vector<std::string> wall_names() const;
 
  private:
   struct Impl;

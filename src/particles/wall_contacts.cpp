@@ -32,8 +32,10 @@ void WallContacts::adopt() {
       int best = -1;
       double closest = same_contact;
       for (int o = first; o < last && o < first + 32; ++o) {
-        if (points_[o].boundary != next_[n].boundary || (taken >> (o - first) & 1)) continue;
-        const double cosine = dot(points_[o].normal, next_[n].normal);
+        if (taken >> (o - first) & 1) continue;
+        // The spring goes on from one wall to a flat neighbour; of two on one spot each keeps its own.
+        const double own = points_[o].boundary == next_[n].boundary ? 1e-6 : 0;
+        const double cosine = dot(points_[o].normal, next_[n].normal) + own;
         if (cosine > closest) closest = cosine, best = o;
       }
       if (best >= 0) taken |= 1u << (best - first);

@@ -8,7 +8,7 @@
 namespace silt {
 
 /// The contacts of particles with walls, from step to step. A point inherits the history of the point of the same
-/// particle and boundary in the step before whose normal is nearest to its own.
+/// particle in the step before whose normal is nearest to its own, whichever wall that was on.
 class WallContacts {
  public:
   explicit WallContacts(int components) : components_(components) {}

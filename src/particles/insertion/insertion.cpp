@@ -79,7 +79,8 @@ void add_file(const InsertionOptions& options, const std::string& prefix, Site& 
     if (!site.room.inside(centre))
       throw UserError(fmt::format("{}: the particle at ({:g}, {:g}, {:g}) lies outside the mesh", place, centre[0],
                                   centre[1], centre[2]));
-    const double into_wall = 1 - site.room.wall_distance(centre, particle.radius) / particle.radius;
+    const double into_wall =
+        1 - std::min(site.room.wall_distance(centre, particle.radius), site.room.clearance(centre)) / particle.radius;
     if (into_wall > options.largest_overlap)
       throw UserError(
           fmt::format("{}: the particle overlaps a wall by {:.3g} of its radius; allowed is {:g} "
@@ -100,11 +101,13 @@ void add_file(const InsertionOptions& options, const std::string& prefix, Site& 
 
 }  // namespace
 
-std::vector<Seed> make_insertions(const Walls& walls, Options& options, const std::vector<std::string>& materials) {
+std::vector<Seed> make_insertions(const Walls& walls, Options& options, const std::vector<std::string>& materials,
+                                  bool only_check) {
   const Surface& surface = walls.surface();
   std::vector<bool> is_wall;
   for (const auto& boundary : walls.boundaries()) is_wall.push_back(boundary.role == BoundaryRole::wall);
-  const Room room(surface, is_wall);
+  Room room(surface, is_wall);
+  if (!walls.rigid().empty()) room.add_walls([&walls](const Vec3& x) { return walls.clearance(x); });
   Vec3 period = Vec3::Zero();
   for (int d = 0; d < 3; ++d)
     if (surface.periodic[d]) period[d] = surface.upper[d] - surface.lower[d];
@@ -114,6 +117,7 @@ std::vector<Seed> make_insertions(const Walls& walls, Options& options, const st
     InsertionOptions chosen;
     options.read(prefix, chosen);
     material_of(chosen, prefix, materials);
+    if (only_check) continue;
     site.sources.push_back(chosen.type == "file" ? chosen.file : prefix);
     if (chosen.type == "file") {
       add_file(chosen, prefix, site);

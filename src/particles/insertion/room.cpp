@@ -126,7 +126,8 @@ bool Room::inside(const Vec3& point) const {
 }
 
 bool Room::holds(const Vec3& centre, double radius) const {
-  return inside(centre) && wall_distance(centre, radius) >= radius - 4 * surface_.tolerance;
+  const double slack = 4 * surface_.tolerance;
+  return inside(centre) && wall_distance(centre, radius) >= radius - slack && clearance(centre) >= radius - slack;
 }
 
 double Room::wall_distance(const Vec3& point, double limit) const {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -19,6 +20,11 @@ class Room {
   bool inside(const Vec3& point) const;
   /// Whether a sphere lies in the mesh with its centre, and no wall is nearer than its radius.
   bool holds(const Vec3& centre, double radius) const;
+  /// Further walls: holds() asks how far a point is from them, negative behind one. m
+  void add_walls(std::function<double(const Vec3&)> clearance) { clearance_ = std::move(clearance); }
+  double clearance(const Vec3& point) const { return clearance_ ? clearance_(point) : 1e150; }
+  /// Distance from the boundary, negative outside; 1e150 without any boundary. m
+  double depth(const Vec3& point) const { return signed_distance(point); }
   /// Distance to the nearest wall, or `limit` when none is nearer. m
   double wall_distance(const Vec3& point, double limit) const;
   /// The point moved by whole periods into the mesh's box.
@@ -37,6 +43,7 @@ class Room {
   const Surface& surface_;
   std::vector<bool> is_wall_;
   std::vector<Vec3> shifts_;
+  std::function<double(const Vec3&)> clearance_;
   std::vector<int> all_, walls_;
   BoxTree tree_, wall_tree_;
   double bin_ = 0;  ///< m, edge of the bins for which the signed distance of the centre is remembered

@@ -69,6 +69,22 @@ Surface::Surface(const Mesh& mesh)
   grow_patches();
 }
 
+Surface::Surface(std::vector<SurfaceFacet> given, const Vec3& low, const Vec3& high,
+                 const std::array<bool, 3>& is_periodic, double round_off)
+    : dimension(3), lower(low), upper(high), periodic(is_periodic), facets(std::move(given)) {
+  double shortest = 1e300, furthest = 0;
+  for (auto& facet : facets) {
+    facet.normal = polygon_normal(facet).normalized();
+    for (int k = 0; k < facet.corners; ++k) {
+      shortest = std::min(shortest, (facet.end(k) - facet.start(k)).norm());
+      furthest = std::max(furthest, facet.corner[k].cwiseAbs().maxCoeff());
+    }
+  }
+  tolerance = std::max({1e-8 * shortest, 1e-14 * (upper - lower).norm(), round_off * furthest});
+  connect();
+  grow_patches();
+}
+
 void Surface::gather(const Mesh& mesh) {
   const double far = 2 * (upper - lower).norm();
   for (auto& facet : all_facets(mesh)) {

@@ -34,6 +34,10 @@ class Surface {
  public:
   /// Gathers the facets of all ranks. Collective.
   explicit Surface(const Mesh& mesh);
+  /// A surface of given facets (corners, number of corners and boundary set, in the same order on every rank) in a
+  /// domain; `round_off`: relative error of the coordinates.
+  Surface(std::vector<SurfaceFacet> facets, const Vec3& lower, const Vec3& upper, const std::array<bool, 3>& periodic,
+          double round_off);
 
   int dimension;
   Vec3 lower, upper;  ///< m, bounding box of the mesh

@@ -8,6 +8,18 @@
 #include "base/error.hpp"
 
 namespace silt {
+
+int wall_material(const std::string& chosen, const std::string& prefix, const Options& options,
+                  const std::vector<std::string>& materials) {
+  if (chosen.empty()) return static_cast<int>(std::min_element(materials.begin(), materials.end()) - materials.begin());
+  const auto found = std::find(materials.begin(), materials.end(), chosen);
+  if (found != materials.end()) return static_cast<int>(found - materials.begin());
+  const std::string hint = nearest(chosen, materials);
+  throw UserError(fmt::format("option -{}_material ({}): '{}' is not a material; there are {}{}", prefix,
+                              options.origin(prefix + "_material"), chosen, fmt::join(materials, ", "),
+                              hint.empty() ? "" : fmt::format(" (did you mean {}?)", hint)));
+}
+
 std::vector<WallBoundary> read_wall_boundaries(const Mesh& mesh, Options& options,
                                                const std::vector<std::string>& materials) {
   std::vector<WallBoundary> result;
@@ -21,18 +33,7 @@ std::vector<WallBoundary> read_wall_boundaries(const Mesh& mesh, Options& option
     boundary.role = chosen.role == "wall"     ? BoundaryRole::wall
                     : chosen.role == "outlet" ? BoundaryRole::outlet
                                               : BoundaryRole::open;
-    if (chosen.material.empty()) {
-      boundary.material = static_cast<int>(std::min_element(materials.begin(), materials.end()) - materials.begin());
-    } else {
-      const auto found = std::find(materials.begin(), materials.end(), chosen.material);
-      if (found == materials.end()) {
-        const std::string hint = nearest(chosen.material, materials);
-        throw UserError(fmt::format("option -{}_material ({}): '{}' is not a material; there are {}{}", prefix,
-                                    options.origin(prefix + "_material"), chosen.material, fmt::join(materials, ", "),
-                                    hint.empty() ? "" : fmt::format(" (did you mean {}?)", hint)));
-      }
-      boundary.material = static_cast<int>(found - materials.begin());
-    }
+    boundary.material = wall_material(chosen.material, prefix, options, materials);
     // The velocity of an inflow is the fluid's; that of a wall is its own.
     if (type.empty() || type == "no_slip") {
       if (const auto text = options.find(prefix + "_velocity")) {

@@ -13,7 +13,7 @@ namespace silt {
 enum class BoundaryRole {
   wall,    ///< they collide with it
   outlet,  ///< a particle whose centre passes it leaves the run and is counted
-  open     ///< no wall and no outlet: a particle whose centre passes it is an error that the engine reports
+  open     ///< no wall and no outlet: a particle whose centre passes it is lost, which `-particles_lost` judges
 };
 
 /// The options `-boundary_<name>_...` of the particles.
@@ -22,7 +22,7 @@ struct WallBoundaryOptions {
   void options(OptionGroup& option) {
     option("particles", role, {"wall", "outlet", "open"},
            "what the boundary is to particles: a wall (default of every fluid type but pressure), an outlet where they "
-           "leave, or open (no wall; a particle that passes is an error)");
+           "leave, or open (no wall; a particle that passes is lost: -particles_lost)");
     option("material", material, "material of the wall; default: the first material in alphabetical order");
   }
 };
@@ -38,6 +38,11 @@ struct WallBoundary {
 
   Vec3 velocity_at(const Vec3& point, double time) const { return motion ? (*motion)(point, time) : velocity; }
 };
+
+/// Index of the material that `-<prefix>_material` names; of the first in alphabetical order when it names none. Throws
+/// UserError for an unknown one.
+int wall_material(const std::string& chosen, const std::string& prefix, const Options& options,
+                  const std::vector<std::string>& materials);
 
 /// Reads the options of every boundary of the mesh. A boundary is a wall unless its fluid type is `pressure` (outlet);
 /// its material is the first of `materials` in alphabetical order unless given.

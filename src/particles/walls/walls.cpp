@@ -1,8 +1,13 @@
 #include "particles/walls/walls.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "base/error.hpp"
 
 namespace silt {
 namespace {
@@ -15,41 +20,45 @@ std::vector<bool> which_are_walls(const std::vector<WallBoundary>& boundaries) {
   return result;
 }
 
-/// Whether a centre may come within `reach` of the face; never false when it may.
-bool within_face(const WallFace& face, const WallSide* sides, const Vec3& centre, double reach) {
-  if (std::abs(face.normal.dot(centre) - face.offset) > reach) return false;
-  for (int s = 0; s < face.sides; ++s)
-    if (sides[s].inward.dot(centre) - sides[s].offset < -reach) return false;
-  return true;
-}
-
-bool within_edge(const WallEdge& edge, const Vec3& centre, double reach) {
-  const double s = std::clamp(edge.direction.dot(centre - edge.start), 0.0, edge.length);
-  return (centre - edge.start - s * edge.direction).squaredNorm() <= reach * reach;
+std::vector<RigidWall> read_rigid_walls(const Surface& domain, Options& options,
+                                        const std::vector<std::string>& materials,
+                                        const std::vector<std::string>& boundaries, double smooth_angle) {
+  std::vector<RigidWall> result;
+  for (const auto& name : options.names("wall", Options::declared<RigidWallOptions>())) {
+    const std::string prefix = "wall_" + name;
+    if (std::find(boundaries.begin(), boundaries.end(), name) != boundaries.end())
+      throw UserError(fmt::format("-{}_...: {} is a boundary of the mesh; another name is needed", prefix, name));
+    RigidWallOptions chosen;
+    options.read(prefix, chosen);
+    const int material = wall_material(chosen.material, prefix, options, materials);
+    result.emplace_back(name, chosen, domain, material, smooth_angle);
+  }
+  return result;
 }
 
 }  // namespace
 
 Walls::Walls(const Mesh& mesh, Options& options, const std::vector<std::string>& materials)
-    : surface_(mesh), boundaries_(read_wall_boundaries(mesh, options, materials)) {
+    : surface_(mesh),
+      boundaries_(read_wall_boundaries(mesh, options, materials)),
+      names_(mesh.boundaries),
+      shifts_(surface_.shifts()) {
   WallOptions chosen;
   options.read("walls", chosen);
-  const double smooth = radians(chosen.smooth_angle);
-  shape_ = WallShape(surface_, which_are_walls(boundaries_), smooth);
-  merge_cosine_ = std::cos(2 * smooth + 1e-6);
+  smooth_angle_ = radians(chosen.smooth_angle);
+  shape_ = WallShape(surface_, which_are_walls(boundaries_), smooth_angle_);
   for (size_t k = 0; k + 2 < mesh.cell_coordinates.size(); k += 3) home_.add(vec3(&mesh.cell_coordinates[k]));
+  rigid_ = read_rigid_walls(surface_, options, materials, mesh.boundaries, smooth_angle_);
+  for (const auto& wall : rigid_) names_.push_back(wall.name());
 }
 
 void Walls::localise(double reach) {
   reach_ = reach;
-  local_ = WallShape();
+  WallShape near;
   Box box = home_;
   box.grow(reach);
-  local_.add_near(shape_, surface_.shifts(), box);
-  std::vector<Box> boxes;
-  for (const auto& face : local_.faces) boxes.push_back(face.box);
-  for (const auto& edge : local_.edges) boxes.push_back(edge.box);
-  tree_ = BoxTree(boxes);
+  near.add_near(shape_, shifts_, box);
+  local_ = FacetedWall(std::move(near), smooth_angle_);
 }
 
 void Walls::list(const Motion* particles, int count, double skin) {
@@ -59,100 +68,120 @@ void Walls::list(const Motion* particles, int count, double skin) {
   if (const double reach = largest + 2 * skin; reach > reach_) localise(reach);
   near_.clear();
   items_.clear();
-  const int faces = static_cast<int>(local_.faces.size());
+  for (auto& wall : rigid_) wall.mark();
   for (int i = 0; i < count; ++i) {
     const Vec3 centre = vec3(particles[i].position);
-    const double reach = particles[i].radius + 0.5 * skin;
-    const int first = static_cast<int>(items_.size());
-    tree_.within(centre, reach, [&](int item) {
-      if (item < faces ? within_face(local_.faces[item], &local_.sides[local_.faces[item].first_side], centre, reach)
-                       : within_edge(local_.edges[item - faces], centre, reach))
-        items_.push_back(item);
-    });
-    const int last = static_cast<int>(items_.size());
-    if (last == first) continue;
-    std::sort(items_.begin() + first, items_.end());
-    const auto edges = std::lower_bound(items_.begin() + first, items_.end(), faces);
-    near_.push_back({i, first, static_cast<int>(edges - items_.begin()), last});
-    for (auto item = edges; item != items_.end(); ++item) *item -= faces;
+    int first = static_cast<int>(items_.size());
+    local_.near(centre, particles[i].radius + 0.5 * skin, items_);
+    if (static_cast<int>(items_.size()) > first) near_.push_back({i, -1, 0, first, static_cast<int>(items_.size())});
+    for (int w = 0; w < static_cast<int>(rigid_.size()); ++w) {
+      const double reach = particles[i].radius + (rigid_[w].motion().moves() ? 1.0 : 0.5) * skin;
+      for (int s = 0; s < static_cast<int>(shifts_.size()); ++s) {
+        first = static_cast<int>(items_.size());
+        if (rigid_[w].repeats(shifts_[s]) && rigid_[w].near(centre, shifts_[s], reach, items_))
+          near_.push_back({i, w, s, first, static_cast<int>(items_.size())});
+      }
+    }
   }
 }
 
 void Walls::points(const Motion* particles, double time, std::vector<WallPoint>& points) const {
   points.clear();
-  for (const Near& near : near_) {
-    const Motion& particle = particles[near.particle];
+  const int boundaries = static_cast<int>(boundaries_.size());
+  for (size_t n = 0; n < near_.size();) {
+    const int i = near_[n].particle;
+    const Vec3 centre = vec3(particles[i].position);
+    const double radius = particles[i].radius;
     const size_t first = points.size();
-    groups_.clear();
-    for (int k = near.first; k < near.faces; ++k) touch_face(local_.faces[items_[k]], particle, points);
-    for (int k = near.faces; k < near.last; ++k) touch_edge(local_.edges[items_[k]], particle, first, points);
-    if (points.size() - first > 1) merge_smooth(first, points);
+    int rigid = 0;
+    for (; n < near_.size() && near_[n].particle == i; ++n) {
+      const Near& near = near_[n];
+      const size_t before = points.size();
+      const int *begin = items_.data() + near.first, *end = items_.data() + near.last;
+      if (near.wall < 0) {
+        local_.touch(centre, radius, begin, end, points);
+        continue;
+      }
+      const RigidWall& wall = rigid_[near.wall];
+      wall.touch(centre, shifts_[near.shift], radius, begin, end, points);
+      rigid += points.size() > before;
+      for (size_t k = before; k < points.size(); ++k) points[k].boundary = boundaries + near.wall;
+    }
+    if (rigid > 1) drop_dominated(centre, first, points);
     for (size_t k = first; k < points.size(); ++k) {
       WallPoint& point = points[k];
-      const WallBoundary& boundary = boundaries_[point.boundary];
-      point.particle = near.particle;
-      point.material = boundary.material;
-      const Vec3 place = vec3(particle.position) - point.distance * vec3(point.normal);
-      vec3(point.velocity) = boundary.velocity_at(place, time);
+      point.particle = i;
+      const Vec3 place = centre - point.distance * vec3(point.normal);
+      if (point.boundary < boundaries) {
+        point.material = boundaries_[point.boundary].material;
+        vec3(point.velocity) = boundaries_[point.boundary].velocity_at(place, time);
+      } else {
+        const RigidWall& wall = rigid_[point.boundary - boundaries];
+        point.material = wall.material();
+        vec3(point.velocity) = wall.motion().velocity_at(place);
+      }
     }
   }
 }
 
-void Walls::touch_face(const WallFace& face, const Motion& particle, std::vector<WallPoint>& points) const {
-  const Vec3 centre = vec3(particle.position);
-  const double gap = face.normal.dot(centre) - face.offset;
-  // A centre behind the face is not inside the domain here: the face belongs to another side of a thin wall.
-  if (gap >= particle.radius || gap < 0) return;
-  const WallSide* sides = &local_.sides[face.first_side];
-  for (int s = 0; s < face.sides; ++s)
-    if (sides[s].inward.dot(centre) - sides[s].offset < -local_.tolerance) return;
-  WallPoint point;
-  point.boundary = face.boundary;
-  point.distance = gap;
-  vec3(point.normal) = face.normal;
-  points.push_back(point);
-  groups_.push_back(face.group);
-}
-
-void Walls::touch_edge(const WallEdge& edge, const Motion& particle, size_t first,
-                       std::vector<WallPoint>& points) const {
-  const Vec3 from_start = vec3(particle.position) - edge.start;
-  const double along = edge.direction.dot(from_start);
-  if (along < -local_.tolerance || along > edge.length + local_.tolerance) return;
-  const Vec3 arm = from_start - along * edge.direction;
-  const double squared = arm.squaredNorm();
-  if (squared >= particle.radius * particle.radius || squared == 0 || arm.dot(edge.outside) < 0) return;
-  for (int r = edge.first_ray; r < edge.first_ray + edge.rays; ++r)
-    if (arm.dot(local_.rays[r]) > local_.tolerance) return;
-  WallPoint point;
-  point.boundary = edge.boundary;
-  point.distance = std::sqrt(squared);
-  vec3(point.normal) = arm / point.distance;
-  // Just where a face ends and its edge begins, round-off may give both: they are the same point.
-  const double same = 1e-6 * particle.radius + 4 * local_.tolerance;
+void Walls::drop_dominated(const Vec3& centre, size_t first, std::vector<WallPoint>& points) const {
+  const int boundaries = static_cast<int>(boundaries_.size());
+  std::vector<char> keep(points.size() - first, 1);
+  for (size_t k = first; k < points.size(); ++k) {
+    if (points[k].boundary < boundaries) continue;
+    const double distance = points[k].distance, same = 1e-6 * (distance + 1e-30);
+    const Vec3 place = centre - distance * vec3(points[k].normal);
+    for (size_t m = first; m < points.size() && keep[k - first]; ++m) {
+      if (m == k || points[m].boundary < boundaries || !keep[m - first]) continue;
+      const bool alike = (vec3(points[m].normal) - vec3(points[k].normal)).norm() < 1e-6 &&
+                         std::abs(points[m].distance - distance) < same;
+      if (alike && m < k) keep[k - first] = 0;  // an image of the same wall, or two walls that share an edge
+      if (alike || points[m].boundary == points[k].boundary || points[m].distance > distance) continue;
+      const RigidWall& other = rigid_[points[m].boundary - boundaries];
+      for (const Vec3& shift : shifts_)
+        if (other.repeats(shift) && std::abs(other.clearance(place, shift)) < same) keep[k - first] = 0;
+    }
+  }
+  size_t kept = first;
   for (size_t k = first; k < points.size(); ++k)
-    if ((points[k].distance * vec3(points[k].normal) - arm).norm() < same) return;
-  points.push_back(point);
-  groups_.push_back(edge.group);
+    if (keep[k - first]) points[kept++] = points[k];
+  points.resize(kept);
 }
 
-void Walls::merge_smooth(size_t first, std::vector<WallPoint>& points) const {
-  const size_t count = points.size() - first;
-  WallPoint* found = &points[first];
-  size_t kept = 0;
-  // A point is dropped when a nearer one of the same smooth wall stands for it; ties go to the earlier one.
-  for (size_t k = 0; k < count; ++k) {
-    bool drop = false;
-    for (size_t m = 0; m < count && !drop; ++m) {
-      if (m == k || groups_[m] != groups_[k] || groups_[k] < 0) continue;
-      if (found[m].distance > found[k].distance || (found[m].distance == found[k].distance && m > k)) continue;
-      drop = vec3(found[m].normal).dot(vec3(found[k].normal)) > merge_cosine_;
-    }
-    found[k].particle = drop ? -1 : 0;
-  }
-  for (size_t k = 0; k < count; ++k)
-    if (found[k].particle == 0) found[kept++] = found[k];
-  points.resize(first + kept);
+bool Walls::servo() const {
+  return std::any_of(rigid_.begin(), rigid_.end(), [](const RigidWall& wall) { return wall.motion().servo(); });
+}
+
+void Walls::advance(double time, double h, const std::vector<Vec3>& force) {
+  for (size_t w = 0; w < rigid_.size(); ++w) rigid_[w].motion().advance(time, h, force[boundaries_.size() + w]);
+}
+
+void Walls::pose(double time) {
+  for (auto& wall : rigid_) wall.motion().pose(time);
+}
+
+double Walls::moved() const {
+  double most = 0;
+  for (const auto& wall : rigid_) most = std::max(most, wall.moved());
+  return most;
+}
+
+std::vector<WallMotion::State> Walls::states() const {
+  std::vector<WallMotion::State> states;
+  for (const auto& wall : rigid_) states.push_back(wall.motion().state());
+  return states;
+}
+
+void Walls::set_states(const std::vector<WallMotion::State>& states) {
+  for (size_t w = 0; w < rigid_.size() && w < states.size(); ++w) rigid_[w].motion().set_state(states[w]);
+}
+
+double Walls::clearance(const Vec3& x) const {
+  double least = infinity;
+  for (const auto& wall : rigid_)
+    for (const Vec3& shift : shifts_)
+      if (wall.repeats(shift)) least = std::min(least, wall.clearance(x, shift));
+  return least;
 }
 
 }  // namespace silt
