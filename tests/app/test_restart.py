@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+# processors: 3
+"""A run that goes on from a checkpoint is the run that was never interrupted: with the same bits on the same ranks, to
+round-off on others; a killed run and one that an error ended go on from what they left; bad files are refused."""
+import csv
+import glob
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+import numpy as np
+
+GRAINS = """\
+mesh: {type: box, lower: [0, 0, 0], upper: [0.024, 0.012, 0.03], cells: [6, 3, 6]}
+gravity: [0, 0, -9.81]
+time: {end: 0.04, step: 1.0e-3}
+fluid: {type: none}
+boundary: {z_max: {particles: outlet}}
+material:
+  bead: {density: 1000, young_modulus: 1.0e6, restitution: 0.9, friction: 0.3, rolling_friction: 0.02}
+rolling: {type: constant}
+wall:
+  paddle: {type: box, side: outside, lower: [0.010, 0, 0.012], upper: [0.014, 0.012, 0.014], rotation_axis: [0, 1, 0], rotation_rate: "10"}
+insertion:
+  bed: {type: fill, material: bead, diameter: 1.5e-3, count: 250, lower: [0, 0, 0], upper: [0.024, 0.012, 0.018]}
+output: {directory: out, interval: 0.01}
+checkpoint: {interval: 0.02}
+progress: {quiet: yes}
+"""
+BED = """\
+mesh: {type: box, lower: [0, 0, 0], upper: [0.016, 0.008, 0.016], cells: [4, 2, 4]}
+gravity: [0, 0, -9.81]
+time: {end: 0.01, step: 1.0e-3}
+fluid: {density: 1.2, viscosity: 1.8e-5, initial_velocity: "0, 0, 0.3"}
+boundary:
+  z_min: {type: velocity, velocity: "0, 0, 0.3"}
+  z_max: {type: pressure}
+  x_min: {type: slip}
+  x_max: {type: slip}
+  y_min: {type: slip}
+  y_max: {type: slip}
+material:
+  bead: {density: 1000, young_modulus: 1.0e6, restitution: 0.9, friction: 0.1}
+insertion:
+  bed: {type: fill, material: bead, diameter: 1.2e-3, count: 150, lower: [0, 0, 0], upper: [0.016, 0.008, 0.010]}
+settle: {time: 0.02}
+drag: {type: gidaspow}
+output: {directory: out, interval: 0.005}
+checkpoint: {interval: 0.005}
+progress: {quiet: yes}
+"""
+BALL = """\
+mesh: {type: box, lower: [0, 0, 0], upper: [0.02, 0.02, 0.02], cells: [2, 2, 2]}
+gravity: [0, 0, -9.81]
+time: {end: 0.06, step: 1.0e-3}
+fluid: {type: none}
+material: {bead: {density: 2500, young_modulus: 1.0e6}}
+particles: {overlap_limit: 0.001}
+insertion: {ball: {type: file, file: ball.csv}}
+output: {directory: out, interval: 0.01}
+progress: {quiet: yes}
+"""
+
+
+class Folder:
+    def __init__(self, silt, case):
+        self.silt, self.path = silt, tempfile.mkdtemp(prefix="silt_restart_")
+        self.write("case.yaml", case)
+        self.write("ball.csv", "x,y,z,diameter,material\n0.01,0.01,0.012,0.002,bead\n")
+
+    def write(self, name, text):
+        with open(os.path.join(self.path, name), "w") as file:
+            file.write(text)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.path, ignore_errors=True)
+
+    def command(self, ranks, options):
+        return (["mpiexec", "-n", str(ranks)] if ranks > 1 else []) + [self.silt, "case.yaml", *options]
+
+    def run(self, ranks, *options, expect=0):
+        done = subprocess.run(self.command(ranks, options), cwd=self.path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=300)
+        if done.returncode != expect:
+            sys.exit(f"{ranks} ranks, {' '.join(options)}: exit code {done.returncode}, expected {expect}\n"
+                     + "\n".join(done.stdout.splitlines()[-12:]))
+        return done.stdout
+
+    def file(self, *names):
+        return os.path.join(self.path, *names)
+
+    def last(self, directory="out"):
+        """Arrays of the last particle output by id."""
+        with h5py.File(sorted(glob.glob(self.file(directory, "particles", "*.h5")))[-1]) as file:
+            order = np.argsort(file["id"][...])
+            return {name: file[name][...][order] for name in ("id", "position", "velocity", "spin")}
+
+    def fluid(self, directory="out"):
+        with h5py.File(sorted(glob.glob(self.file(directory, "fluid", "0*.h5")))[-1]) as file:
+            return {name: file[name][...] for name in ("velocity", "pressure", "void_fraction")}
+
+    def times(self, table="diagnostics.csv"):
+        with open(self.file("out", table)) as file:
+            return [float(row["time"]) for row in csv.DictReader(file)]
+
+
+def main():
+    silt = os.path.abspath(sys.argv[1])
+    faults = []
+
+    def check(label, good, said=""):
+        print(f"{'ok  ' if good else 'FAIL'} {label} {said}")
+        if not good:
+            faults.append(label)
+
+    def difference(a, b, name):
+        return np.abs(a[name] - b[name]).max() / max(np.abs(b[name]).max(), 1e-300)
+
+    # Coupled runs add up over ranks in the order messages come in: the same bits on one rank, round-off on several.
+    for name, case, half, end, tolerance in (("grains", GRAINS, "0.02", 0.04, 0), ("bed", BED, "0.005", 0.01, 1e-7)):
+        with Folder(silt, case) as whole, Folder(silt, case) as parts:
+            for ranks in (1, 2, 3):
+                whole.run(ranks)
+                parts.run(ranks, "-time_end", half)
+                keep = parts.file(f"half_{ranks}.h5")
+                shutil.copy(parts.file("out", "checkpoint.h5"), keep)
+                parts.run(ranks, "-restart", "out/checkpoint.h5")
+                one, two = whole.last(), parts.last()
+                label = f"{name}, {ranks} ranks"
+                allowed = tolerance if ranks > 1 else 0
+                check(f"{label}: same particles", np.array_equal(one["id"], two["id"]))
+                for array in ("position", "velocity", "spin"):
+                    far = difference(two, one, array)
+                    check(f"{label}: {array} as without interruption", far <= allowed, f"{far:.2g}")
+                if name == "bed":
+                    for array in ("velocity", "pressure", "void_fraction"):
+                        far = difference(parts.fluid(), whole.fluid(), array)
+                        check(f"{label}: fluid {array} as without interruption", far <= allowed, f"{far:.2g}")
+                for table in ("diagnostics.csv", "ledger.csv", "walls.csv"):
+                    check(f"{label}: {table} is continued", parts.times(table) == whole.times(table))
+                xdmf = [open(f.file("out", "particles.xdmf")).read().count("<Time") for f in (whole, parts)]
+                check(f"{label}: the series is continued", xdmf[0] == xdmf[1], str(xdmf))
+            one = parts.last()
+            for ranks in (1, 2, 3):
+                other = 1 + ranks % 3
+                parts.run(other, "-restart", f"half_{ranks}.h5", "-output_directory", "moved")
+                two = parts.last("moved")
+                far = difference(two, one, "position")
+                check(f"{name}: from {ranks} to {other} ranks", np.array_equal(one["id"], two["id"]) and far < 1e-5, f"{far:.2g}")
+
+    with Folder(silt, GRAINS) as folder:
+        # Killed at any instant, a run goes on from its last complete checkpoint.
+        running = subprocess.Popen(folder.command(1, ["-time_end", "5"]), cwd=folder.path, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for _ in range(600):
+            if os.path.exists(folder.file("out", "checkpoint.h5")):
+                break
+            time.sleep(0.1)
+        time.sleep(0.05)
+        running.send_signal(signal.SIGKILL)
+        running.wait()
+        with h5py.File(folder.file("out", "checkpoint.h5")) as file:
+            reached = float(file.attrs["time"])
+        folder.run(2, "-restart", "out/checkpoint.h5", "-time_end", f"{reached + 0.01:.6f}")
+        times = folder.times()
+        check("a killed run goes on", abs(times[-1] - reached - 0.01) < 1e-6 and all(a < b for a, b in zip(times, times[1:])))
+
+        # What is no checkpoint of this case is refused with one line.
+        shutil.copy(folder.file("out", "checkpoint.h5"), folder.file("good.h5"))
+        blob = bytearray(open(folder.file("good.h5"), "rb").read())
+        with h5py.File(folder.file("good.h5")) as file:
+            offset = file["particle_motion"].id.get_offset()
+        blob[offset + 100] ^= 1
+        open(folder.file("flipped.h5"), "wb").write(blob)
+        open(folder.file("cut.h5"), "wb").write(blob[: len(blob) // 2])
+        folder.write("text.h5", "no checkpoint")
+        foreign = sorted(glob.glob(folder.file("out", "particles", "*.h5")))[0]
+        for file, words, options in (("flipped.h5", "damaged", []), ("cut.h5", "damaged", []), ("text.h5", "no HDF5 file", []),
+                                     (foreign, "no checkpoint", []), ("nowhere.h5", "does not exist", []),
+                                     ("good.h5", "materials", ["-material_sand_density", "2600"]),
+                                     ("good.h5", "walls", ["-wall_extra_type", "sphere", "-wall_extra_side", "outside", "-wall_extra_point", "0.002, 0.002, 0.028", "-wall_extra_radius", "0.001"])):
+            for ranks in (1, 2):
+                said = folder.run(ranks, "-restart", file, "-output_directory", "refused", *options, expect=2)
+                line = [text for text in said.splitlines() if text.startswith("silt: error:")]
+                check(f"{os.path.basename(file)} {' '.join(options[:1])}, {ranks} ranks: {words}", len(line) == 1 and words in line[0] and "-restart" in line[0], said if not line else "")
+                check("nothing is written", not os.path.exists(folder.file("refused")))
+
+    with Folder(silt, BALL) as folder:
+        for ranks in (1, 2):
+            said = folder.run(ranks, expect=1)
+            check(f"an error tells where the last good state is, {ranks} ranks", "overlaps" in said and "out/last_good.h5 (-restart)" in said, said[-300:])
+            folder.run(ranks, "-restart", "out/last_good.h5", "-particles_overlap_limit", "0.5")
+            check("the run goes on from it", abs(folder.times()[-1] - 0.06) < 1e-9)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
