@@ -41,8 +41,10 @@ void Budget::start(const OutputDirectory& directory, const Fluid* fluid, Particl
   std::vector<std::string> columns = {"time",           "residual",     "exchange_residual", "particle_residual",
                                       "taken_residual", "mass_residual"};
   if (with_fluid_) add_columns(columns, {"fluid_momentum", "boundary_impulse", "unaccounted"});
-  if (with_particles_)
+  if (with_particles_) {
     add_columns(columns, {"particle_momentum", "gravity", "walls", "drag", "fluid_force", "kicks", "added", "removed"});
+    columns.insert(columns.end(), {"particle_mass", "added_mass", "removed_mass"});
+  }
   if (with_fluid_ && with_particles_) {
     add_columns(columns, {"drag_on_fluid", "response_on_fluid", "pressure_on_fluid", "in_transit"});
     columns.insert(columns.end(), {"particle_volume", "deposited_volume"});
@@ -51,6 +53,7 @@ void Budget::start(const OutputDirectory& directory, const Fluid* fluid, Particl
   fluid_known_ = fluid == nullptr;
   if (particles) {
     particle_momentum_ = particles->momentum();
+    particle_mass_ = particles->total_mass();
     particles->take_impulses();
   }
 }
@@ -60,15 +63,20 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeL
   double particle_residual = 0, taken_residual = 0;
   Particles::Impulses in;
   Vec3 momentum = Vec3::Zero();
+  double mass = 0;
   if (particles) {
     in = particles->take_impulses();
     momentum = particles->momentum();
     const Vec3 sum = in.gravity + in.walls + in.drag + in.fluid_force + in.kicks + in.added + in.removed;
-    double scale = std::sqrt(2 * particles->total_mass() * particles->kinetic_energy());
+    mass = particles->total_mass();
+    double scale = std::sqrt(2 * mass * particles->kinetic_energy());
     for (const Vec3* v : {&in.gravity, &in.walls, &in.drag, &in.fluid_force, &in.kicks, &in.added, &in.removed})
       scale += v->norm();
     scale = std::max(scale, 1e-300);
     particle_residual = (momentum - particle_momentum_ - sum).norm() / scale;
+    const double moved = std::max({mass, particle_mass_, 1e-300});
+    particle_residual =
+        largest({particle_residual, std::abs(mass - particle_mass_ - in.added_mass + in.removed_mass) / moved});
     // A particle that left during the step took with it what it was owed: that is in its removal.
     if (exchange && in.removed.norm() == 0)
       taken_residual =
@@ -92,15 +100,18 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeL
     add(row, through);
     add(row, unaccounted);
   }
-  if (with_particles_)
+  if (with_particles_) {
     for (const Vec3& v : {momentum, in.gravity, in.walls, in.drag, in.fluid_force, in.kicks, in.added, in.removed})
       add(row, v);
+    row.insert(row.end(), {mass, in.added_mass, in.removed_mass});
+  }
   if (with_fluid_ && with_particles_) {
     const ExchangeLedger none, &e = exchange ? *exchange : none;
     for (const Vec3& v : {e.drag_on_fluid, e.response_on_fluid, e.pressure_on_fluid, e.in_transit}) add(row, v);
     row.insert(row.end(), {e.particle_volume, e.deposited_volume});
   }
   particle_momentum_ = momentum;
+  particle_mass_ = mass;
   table_.row(row);
   if (!(residual <= options_.tolerance))
     throw RunError(

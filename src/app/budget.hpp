@@ -24,6 +24,8 @@ struct LedgerOptions {
 ///  - mass_residual: the fluid's volume balance as the fluid reports it, relative to its inflow;
 ///  - unaccounted_*: change of the fluid's momentum less the impulses through the boundary and of the particles; it
 ///    holds the time scheme's and the stabilisation's share and is no residual.
+///  - particle_mass, added_mass, removed_mass (kg): what is there, and what came and went in the step; its residual is
+///    part of particle_residual.
 /// The first three above `-ledger_tolerance` stop the run.
 class Budget {
  public:
@@ -39,6 +41,7 @@ class Budget {
   bool with_fluid_, with_particles_;
   CsvWriter table_;
   Vec3 particle_momentum_ = Vec3::Zero(), fluid_momentum_ = Vec3::Zero();
+  double particle_mass_ = 0;
   bool fluid_known_ = false;
 };
 

@@ -12,6 +12,7 @@
 #include "fluid/pressure_correction/pressure_correction.hpp"
 #include "particles/contact_models.hpp"
 #include "particles/insertion/insertion_options.hpp"
+#include "particles/insertion/streams.hpp"
 #include "particles/materials.hpp"
 #include "particles/particle_options.hpp"
 #include "particles/walls/wall_boundary.hpp"
@@ -56,6 +57,7 @@ Options everything() {
   declare(options, "twisting", TwistingModels{}, "twisting resistance");
   declare<ParticleOptions>(options, "particles");
   declare<InsertionOptions>(options, "insertion_<name>");
+  declare<RemovalOptions>(options, "removal_<name>");
   declare<SettleOptions>(options, "settle");
   declare(options, "drag", DragModels{}, "drag law");
   declare<CouplingOptions>(options, "coupling");

@@ -226,6 +226,10 @@ void Simulation::write_checkpoint(const std::string& file) {
 /// Particles first, with the flow of the step's start; then the flow, with what they did to it; then the account is
 /// settled.
 void Simulation::attempt() {
+  if (particles_) {
+    const Stopwatch watch(*this, moving_particles);
+    particles_->supply(now_.time, dt_);
+  }
   if (coupling_) {
     const Stopwatch watch(*this, exchanging);
     coupling_->before_particles(dt_);

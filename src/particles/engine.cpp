@@ -35,6 +35,7 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
       options_(read<ParticleOptions>(options, "particles")),
       laws_(options, materials),
       walls_(on_mesh, options, names_of(materials)),
+      streams_(walls_, options, materials, names_of(materials)),
       migration_(on_mesh, communicator_),
       halo_(communicator_),
       kernels_(choose_kernels(options_.instructions.c_str())),
@@ -113,6 +114,7 @@ void Engine::add(const std::vector<Seed>& seeds) {
     memory_.rows.append(nullptr, 0);
     wall_memory_.append(nullptr, 0);
     impulses.added += mass * vec3(motion.velocity);
+    impulses.added_mass += mass;
   }
   next_id_ += static_cast<std::int64_t>(seeds.size());
   total += static_cast<long long>(seeds.size());
@@ -163,6 +165,7 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
       }
     }
     impulses.removed -= leaving.mass * leaving.velocity;
+    impulses.removed_mass += leaving.mass;
     departed.push_back(leaving);
     const bool open = one.boundary >= 0 && walls_.role(one.boundary) == BoundaryRole::open;
     if (one.boundary < 0 || open || walls_.role(one.boundary) == BoundaryRole::wall) {
@@ -323,6 +326,7 @@ void Engine::start(double time) {
   try {
     stop_if_any(trouble_);
   } catch (const RunError& error) {
+    if (advanced_) throw;
     throw UserError(std::string("at the start ") + error.what());
   }
   started_ = true;
@@ -330,7 +334,8 @@ void Engine::start(double time) {
 
 ParticleStep Engine::advance(double time, double dt) {
   ParticleStep result;
-  departed.clear();
+  departed.swap(taken_out_);
+  taken_out_.clear();
   rebuilds_ = 0;
   wall_impulse.assign(walls_.count(), Vec3::Zero());
   wall_turning = wall_impulse;
@@ -380,6 +385,7 @@ ParticleStep Engine::advance(double time, double dt) {
   kernels_.integrate(step);
   collect_fluid();
   stop_if_any(trouble_);
+  advanced_ = !settling_;
   if (!migration_.all_at_home(store)) {
     const long long before = removed;
     rebuild(store.present, false, h);

@@ -6,6 +6,7 @@
 #include "particles/contact_laws.hpp"
 #include "particles/contact_lists.hpp"
 #include "particles/halo.hpp"
+#include "particles/insertion/streams.hpp"
 #include "particles/materials.hpp"
 #include "particles/migration.hpp"
 #include "particles/neighbours.hpp"
@@ -48,6 +49,7 @@ struct Particles::Snapshot {
   Vec3 wall_total;
   std::vector<Vec3> wall_force, wall_torque;
   std::vector<WallMotion::State> wall_states;
+  std::vector<StreamState> streams;
   bool started;
 };
 
@@ -58,6 +60,7 @@ class Engine {
 
   void add(const std::vector<Seed>& seeds);
   ParticleStep advance(double time, double dt);
+  void supply(double time, double dt);
   /// Lets the particles fall without fluid until the options say they are at rest.
   void settle(const SettleOptions& options);
 
@@ -92,6 +95,7 @@ class Engine {
   void rebuild(Aligned<Load>& carried, bool within_step, double h);
   void depart(const std::vector<Gone>& gone, bool within_step, double h);
   void evaluate(double time, double dt);
+  void take_out(double time);
   void move_walls(double time, double h);
   void add_wall_impulses(double h);
   /// Takes the contacts' memories out of the lists, whose indices are about to change.
@@ -111,6 +115,9 @@ class Engine {
   OwnCommunicator communicator_;
   ContactLaws laws_;
   Walls walls_;
+  Streams streams_;
+  std::vector<Departed> taken_out_;  ///< by removal boxes, since the last advance()
+  bool advanced_ = false;            ///< the run is past its first step
   Migration migration_;
   Halo halo_;
   const Kernels& kernels_;

@@ -63,7 +63,8 @@ void Engine::save(CheckpointWriter& to) {
   for (int c = 0; c < store.columns.count(); ++c) {
     const ColumnRequest& column = store.columns.request(c);
     const double* first = store.columns.values(c);
-    to.add("column_" + column.name, column.width, std::vector<double>(first, first + static_cast<long>(n) * column.width));
+    to.add("column_" + column.name, column.width,
+           std::vector<double>(first, first + static_cast<long>(n) * column.width));
   }
   to.add("contacts_each", 1, rows_each(memory_.rows, n));
   to.add("contacts", memory_.rows.width, memory_.rows.entries);
@@ -79,6 +80,9 @@ void Engine::save(CheckpointWriter& to) {
     for (const auto& state : walls_.states())
       states.insert(states.end(), {state.travel[0], state.travel[1], state.travel[2], state.angle, state.servo_speed});
   to.add("wall_states", 5, states);
+  std::vector<double> streams;
+  if (mpi_rank() == 0) streams = as_numbers(streams_.states().data(), streams_.count());
+  to.add("streams", sizeof(StreamState) / sizeof(double), streams);
   to.note("particle_step", limit.step);
   to.note("particle_step_reason", limit.reason);
   to.note("particles_total", static_cast<double>(total));
@@ -152,6 +156,12 @@ void Engine::load(const CheckpointReader& from) {
     states.push_back({vec3(&numbers[k]), numbers[k + 3], numbers[k + 4]});
   walls_.set_states(states);
 
+  if (from.rows("streams") != streams_.count())
+    from.refuse(fmt::format("has {} streams of particles, this case has {}", from.rows("streams"), streams_.count()));
+  const auto stream_numbers = from.numbers("streams");
+  std::vector<StreamState> stream_states(streams_.count());
+  std::copy(stream_numbers.begin(), stream_numbers.end(), reinterpret_cast<double*>(stream_states.data()));
+  streams_.set_states(stream_states);
   limit = {from.number("particle_step"), from.text("particle_step_reason")};
   total = static_cast<long long>(from.number("particles_total"));
   removed = static_cast<long long>(from.number("particles_removed"));
@@ -159,6 +169,7 @@ void Engine::load(const CheckpointReader& from) {
   largest_radius_ = from.number("particles_largest_radius");
   skin_ = from.number("particles_skin");
   started_ = from.number("particles_started") != 0;
+  advanced_ = true;
   contacts.clear();
   detached_ = true;
   fluid_ = false;

@@ -64,12 +64,12 @@ std::shared_ptr<const Particles::Snapshot> Engine::snapshot() const {
     wall_contacts.gather(store.owned, wall_memory);
   }
   const int n = store.owned;
-  return std::make_shared<const Particles::Snapshot>(
-      Particles::Snapshot{n, std::vector<Motion>(store.motion.data(), store.motion.data() + n),
-                          std::vector<Load>(store.present.data(), store.present.data() + n),
-                          std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n), store.cell, store.action,
-                          store.columns.save(n), std::move(memory), std::move(wall_memory), impulses, total, removed,
-                          next_id_, wall_total_, wall_force, wall_torque, walls_.states(), started_});
+  return std::make_shared<const Particles::Snapshot>(Particles::Snapshot{
+      n, std::vector<Motion>(store.motion.data(), store.motion.data() + n),
+      std::vector<Load>(store.present.data(), store.present.data() + n),
+      std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n), store.cell, store.action,
+      store.columns.save(n), std::move(memory), std::move(wall_memory), impulses, total, removed, next_id_, wall_total_,
+      wall_force, wall_torque, walls_.states(), streams_.states(), started_});
 }
 
 void Engine::restore(const Particles::Snapshot& saved) {
@@ -94,6 +94,8 @@ void Engine::restore(const Particles::Snapshot& saved) {
   wall_force = saved.wall_force;
   wall_torque = saved.wall_torque;
   walls_.set_states(saved.wall_states);
+  streams_.set_states(saved.streams);
+  taken_out_.clear();
   started_ = saved.started;
   departed.clear();
   fluid_ = false;

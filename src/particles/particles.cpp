@@ -61,6 +61,7 @@ void Particles::kick(int i, const Vec3& impulse) {
 }
 
 void Particles::add(const std::vector<Seed>& seeds) { impl_->add(seeds); }
+void Particles::supply(double time, double dt) { impl_->supply(time, dt); }
 ParticleStep Particles::advance(double time, double dt) { return impl_->advance(time, dt); }
 const std::vector<Departed>& Particles::departed() const { return impl_->departed; }
 double Particles::time_step() const { return impl_->limit.step; }
@@ -101,10 +102,12 @@ Particles::Impulses Particles::take_impulses() {
                           &mine.kicks,   &mine.added, &mine.removed};
   for (int k = 0; k < 7; ++k)
     for (int d = 0; d < 3; ++d) values[k][d] = (*parts[k])[d];
+  double mass[2] = {mine.added_mass, mine.removed_mass};
   MPI_Allreduce(MPI_IN_PLACE, values, 21, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, mass, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   mine = {};
-  return {vec3(values[0]), vec3(values[1]), vec3(values[2]), vec3(values[3]),
-          vec3(values[4]), vec3(values[5]), vec3(values[6])};
+  return {vec3(values[0]), vec3(values[1]), vec3(values[2]), vec3(values[3]), vec3(values[4]),
+          vec3(values[5]), vec3(values[6]), mass[0],         mass[1]};
 }
 
 std::vector<std::string> Particles::wall_names() const {

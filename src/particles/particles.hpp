@@ -116,6 +116,9 @@ class Particles {
   /// Adds an impulse to particle i at once (settling with the fluid).
   void kick(int i, const Vec3& impulse);
 
+  /// Takes out the particles in removal boxes and adds those that streams bring in the step from time to time + dt; to
+  /// be called before the step. Those taken out are among departed() after the advance(). Collective.
+  void supply(double time, double dt);
   /// Moves all particles by dt (in substeps not longer than time_step()). Collective.
   ParticleStep advance(double time, double dt);
   /// Those that left during the last advance() and were owned by this rank.
@@ -137,6 +140,7 @@ class Particles {
   struct Impulses {
     Vec3 gravity = Vec3::Zero(), walls = Vec3::Zero(), drag = Vec3::Zero(), fluid_force = Vec3::Zero(),
          kicks = Vec3::Zero(), added = Vec3::Zero(), removed = Vec3::Zero();
+    double added_mass = 0, removed_mass = 0;  ///< kg
   };
   Impulses take_impulses();
 

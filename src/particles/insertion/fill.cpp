@@ -7,61 +7,15 @@
 #include <functional>
 
 #include "base/error.hpp"
+#include "particles/insertion/dense_packing.hpp"
 #include "particles/insertion/lattice.hpp"
 #include "particles/insertion/random.hpp"
+#include "particles/insertion/size_distribution.hpp"
 
 namespace silt {
 namespace {
 
 enum Stream { sizes = 0, choice = 1, displacement = 2, position = 3 };
-
-double drawn_radius(const InsertionOptions& options, RandomStream& random) {
-  const double mean = *options.diameter, deviation = options.diameter_deviation;
-  const auto normal = [&] {
-    double z = random.normal();
-    while (std::abs(z) > 3) z = random.normal();
-    return z;
-  };
-  double diameter = mean;
-  do {
-    if (options.diameter_distribution == "uniform") {
-      diameter = mean + random.uniform(-deviation, deviation);
-    } else if (options.diameter_distribution == "normal") {
-      diameter = mean + deviation * normal();
-    } else if (options.diameter_distribution == "lognormal") {
-      const double variance = std::log(1 + deviation * deviation / (mean * mean));
-      diameter = mean * std::exp(std::sqrt(variance) * normal() - 0.5 * variance);
-    }
-  } while (diameter < 0.1 * mean);
-  return 0.5 * diameter;
-}
-
-/// As many radii as asked, largest first.
-std::vector<double> drawn_radii(const InsertionOptions& options, const std::string& prefix, const Region& region) {
-  if (!options.diameter) throw UserError(fmt::format("option -{}_diameter is missing", prefix));
-  if ((options.count > 0) == options.solids_fraction.has_value())
-    throw UserError(fmt::format("-{0}: give either -{0}_count or -{0}_solids_fraction", prefix));
-  RandomStream random(options.seed, sizes);
-  std::vector<double> radii;
-  if (options.count > 0) {
-    for (int k = 0; k < options.count; ++k) radii.push_back(drawn_radius(options, random));
-  } else {
-    const double wanted = *options.solids_fraction * region.volume();
-    double volume = 0;
-    if (wanted > 2e9 * space_of(0.5 * *options.diameter, region.dimension()))
-      throw UserError(fmt::format("option -{}_solids_fraction: {:g} of the region are more than 2e9 particles", prefix,
-                                  *options.solids_fraction));
-    for (;;) {
-      const double radius = drawn_radius(options, random), space = space_of(radius, region.dimension());
-      // The last particle counts when that is nearer to the wanted volume.
-      if (volume + 0.5 * space > wanted) break;
-      volume += space;
-      radii.push_back(radius);
-    }
-  }
-  std::sort(radii.begin(), radii.end(), std::greater<>());
-  return radii;
-}
 
 double total_space(const std::vector<double>& radii, int dimension) {
   double sum = 0;
@@ -142,6 +96,32 @@ void add_all(const std::vector<PlacedSphere>& spheres, Packing& placed) {
 }
 
 }  // namespace
+
+std::vector<double> drawn_radii(const InsertionOptions& options, const std::string& prefix, const Region& region) {
+  const SizeDistribution distribution(options, prefix);
+  if ((options.count > 0) == options.solids_fraction.has_value())
+    throw UserError(fmt::format("-{0}: give either -{0}_count or -{0}_solids_fraction", prefix));
+  RandomStream random(options.seed, sizes);
+  std::vector<double> radii;
+  if (options.count > 0) {
+    for (int k = 0; k < options.count; ++k) radii.push_back(distribution.radius(random));
+  } else {
+    const double wanted = *options.solids_fraction * region.volume();
+    double volume = 0;
+    if (wanted > 2e9 * space_of(distribution.largest_radius(), region.dimension()))
+      throw UserError(fmt::format("option -{}_solids_fraction: {:g} of the region are more than 2e9 particles", prefix,
+                                  *options.solids_fraction));
+    for (;;) {
+      const double radius = distribution.radius(random), space = space_of(radius, region.dimension());
+      // The last particle counts when that is nearer to the wanted volume.
+      if (volume + 0.5 * space > wanted) break;
+      volume += space;
+      radii.push_back(radius);
+    }
+  }
+  std::sort(radii.begin(), radii.end(), std::greater<>());
+  return radii;
+}
 
 std::vector<PlacedSphere> fill_region(const InsertionOptions& options, const std::string& prefix, const Region& region,
                                       Packing& placed) {

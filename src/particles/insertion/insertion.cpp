@@ -6,11 +6,14 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "particles/insertion/fill.hpp"
+#include "particles/insertion/dense_packing.hpp"
 #include "particles/insertion/particle_file.hpp"
+#include "particles/insertion/size_distribution.hpp"
 
 namespace silt {
 namespace {
+
+constexpr int material_stream = 4;
 
 /// Everything that one insertion needs of the others and of the mesh.
 struct Site {
@@ -31,18 +34,6 @@ struct Site {
   }
 };
 
-int material_of(const InsertionOptions& options, const std::string& prefix, const std::vector<std::string>& materials) {
-  if (materials.empty()) throw UserError(fmt::format("-{}: no material is defined (-material_<name>_density)", prefix));
-  if (options.material.empty())
-    return static_cast<int>(std::min_element(materials.begin(), materials.end()) - materials.begin());
-  const auto found = std::find(materials.begin(), materials.end(), options.material);
-  if (found != materials.end()) return static_cast<int>(found - materials.begin());
-  const std::string hint = nearest(options.material, materials);
-  throw UserError(fmt::format("option -{}_material: '{}' is not a material; there are {}{}", prefix, options.material,
-                              fmt::join(materials, ", "),
-                              hint.empty() ? "" : fmt::format(" (did you mean {}?)", hint)));
-}
-
 Region region_of(const InsertionOptions& options, const std::string& prefix, const Room& room) {
   const Surface& surface = room.surface();
   Box box;
@@ -61,16 +52,18 @@ Region region_of(const InsertionOptions& options, const std::string& prefix, con
 
 void add_spheres(const std::vector<PlacedSphere>& spheres, const InsertionOptions& options, const std::string& prefix,
                  Site& site) {
-  const int material = material_of(options, prefix, site.materials);
+  const MaterialChoice choice(options, prefix, site.materials);
+  RandomStream random(options.seed, material_stream);
   for (const auto& sphere : spheres) {
     site.origins.push_back({static_cast<int>(site.sources.size()) - 1, 0});
-    site.seeds.push_back({sphere.centre, options.velocity, options.spin, sphere.radius, material});
+    site.seeds.push_back({sphere.centre, options.velocity, options.spin, sphere.radius, choice.draw(random)});
   }
 }
 
 void add_file(const InsertionOptions& options, const std::string& prefix, Site& site) {
   const auto particles = read_particle_file(prefix + "_file", options.file, site.materials);
-  const int material = material_of(options, prefix, site.materials);
+  const MaterialChoice choice(options, prefix, site.materials);
+  RandomStream random(options.seed, material_stream);
   for (const auto& particle : particles) {
     const std::string place = fmt::format("{}:{}", options.file, particle.line);
     const Vec3 centre = site.room.wrapped(particle.position);
@@ -95,7 +88,7 @@ void add_file(const InsertionOptions& options, const std::string& prefix, Site& 
     site.placed.add(centre, particle.radius);
     site.origins.push_back({static_cast<int>(site.sources.size()) - 1, particle.line});
     site.seeds.push_back({centre, particle.velocity.value_or(options.velocity), particle.spin.value_or(options.spin),
-                          particle.radius, particle.material < 0 ? material : particle.material});
+                          particle.radius, particle.material < 0 ? choice.draw(random) : particle.material});
   }
 }
 
@@ -116,15 +109,16 @@ std::vector<Seed> make_insertions(const Walls& walls, Options& options, const st
     const std::string prefix = "insertion_" + name;
     InsertionOptions chosen;
     options.read(prefix, chosen);
-    material_of(chosen, prefix, materials);
-    if (only_check) continue;
+    const MaterialChoice known(chosen, prefix, materials);
+    if (only_check || chosen.type == "stream") continue;
     site.sources.push_back(chosen.type == "file" ? chosen.file : prefix);
     if (chosen.type == "file") {
       add_file(chosen, prefix, site);
     } else {
       const Region region = region_of(chosen, prefix, room);
-      add_spheres(chosen.type == "fill" ? fill_region(chosen, prefix, region, site.placed)
-                                        : lattice_region(chosen, prefix, region, site.placed),
+      add_spheres(chosen.type == "fill"   ? fill_region(chosen, prefix, region, site.placed)
+                  : chosen.type == "pack" ? pack_region(chosen, prefix, region, site.placed)
+                                          : lattice_region(chosen, prefix, region, site.placed),
                   chosen, prefix, site);
     }
   }

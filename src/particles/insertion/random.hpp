@@ -19,6 +19,9 @@ class RandomStream {
   std::uint64_t below(std::uint64_t count) {
     return static_cast<std::uint64_t>(uniform() * static_cast<double>(count));
   }
+  /// How many numbers were drawn, and how to go on after as many.
+  std::uint64_t drawn() const { return counter_; }
+  void go_on_after(std::uint64_t count) { counter_ = count; }
   /// Mean 0, standard deviation 1 (Box & Muller 1958).
   double normal() {
     const double u = 1 - uniform(), v = uniform();

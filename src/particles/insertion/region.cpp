@@ -1,5 +1,7 @@
 #include "particles/insertion/region.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace silt {
@@ -40,6 +42,30 @@ Box Region::centres(double radius) const {
       box.upper[d] -= radius;
     }
   return box;
+}
+
+Vec3 Region::clamped(Vec3 centre, double radius) const {
+  const Box box = centres(radius);
+  for (int d = 0; d < dimension(); ++d) {
+    const double length = box.upper[d] - box.lower[d];
+    if (spans_[d])
+      centre[d] -= length * std::floor((centre[d] - box.lower[d]) / length);
+    else
+      centre[d] = std::clamp(centre[d], box.lower[d], box.upper[d]);
+  }
+  if (axis_ < 0) return centre;
+  double limit = -radius;
+  for (int d = 0, first = 1; d < 3; ++d)
+    if (d != axis_) {
+      const double half = 0.5 * (box_.upper[d] - box_.lower[d]) - radius;
+      limit = first ? half : std::min(limit, half);
+      first = 0;
+    }
+  const Vec3 middle = 0.5 * (box_.lower + box_.upper);
+  Vec3 off = centre - middle;
+  off[axis_] = 0;
+  if (const double out = off.norm(); out > limit) centre -= (1 - limit / out) * off;
+  return centre;
 }
 
 bool Region::holds(const Vec3& centre, double radius) const {

@@ -17,6 +17,8 @@ class Region {
   Box centres(double radius) const;
   /// Whether a whole sphere lies in the region, in the mesh and off its walls.
   bool holds(const Vec3& centre, double radius) const;
+  /// The place nearest to a point where a sphere of this radius lies in the region's box or cylinder.
+  Vec3 clamped(Vec3 centre, double radius) const;
   /// Whether the region spans a whole period in direction d.
   bool spans_period(int d) const { return spans_[d]; }
   int dimension() const { return room_.surface().dimension; }

@@ -1,0 +1,88 @@
+// Particles that come and go during the run by option.
+#include <algorithm>
+#include <array>
+
+#include "base/petsc.hpp"
+#include "particles/engine.hpp"
+
+namespace silt {
+namespace {
+
+/// The spheres of all ranks that may touch one in the box, in the order of their numbers.
+std::vector<PlacedSphere> gather_near(const Store& store, const Box& box, double largest, const Vec3& period,
+                                      MPI_Comm communicator) {
+  using Record = std::array<double, 5>;
+  std::vector<Record> mine;
+  for (int p = 0; p < store.owned; ++p) {
+    const Motion& motion = store.motion[p];
+    bool near = true;
+    for (int d = 0; d < 3 && near; ++d) {
+      const double middle = 0.5 * (box.lower[d] + box.upper[d]), half = 0.5 * (box.upper[d] - box.lower[d]) + largest;
+      double off = motion.position[d] - middle;
+      if (period[d] > 0) off -= period[d] * std::nearbyint(off / period[d]);
+      near = std::abs(off) <= half;
+    }
+    if (near)
+      mine.push_back({static_cast<double>(store.id[p]), motion.position[0], motion.position[1], motion.position[2],
+                      motion.radius});
+  }
+  const int size = mpi_size(), count = static_cast<int>(mine.size()) * 5;
+  std::vector<int> counts(size), starts(size, 0);
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator);
+  for (int r = 1; r < size; ++r) starts[r] = starts[r - 1] + counts[r - 1];
+  std::vector<Record> all((starts.back() + counts.back()) / 5);
+  MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, communicator);
+  std::sort(all.begin(), all.end());
+  std::vector<PlacedSphere> spheres;
+  for (const auto& one : all) spheres.push_back({Vec3(one[1], one[2], one[3]), one[4]});
+  return spheres;
+}
+
+}  // namespace
+
+void Engine::supply(double time, double dt) {
+  if (streams_.removes()) take_out(time);
+  for (int s = 0; s < streams_.count(); ++s) {
+    if (!streams_.due(s, time, dt)) continue;
+    walls_.pose(time);
+    const Vec3 period(periods_.length[0], periods_.length[1], periods_.length[2]);
+    const auto seeds =
+        streams_.add(s, time, dt, gather_near(store, streams_.region(s), largest_radius_, period, communicator_));
+    if (!seeds.empty()) add(seeds);
+  }
+}
+
+void Engine::take_out(double time) {
+  std::vector<int> staying;
+  std::vector<Departed> leaving;
+  for (int p = 0; p < store.owned; ++p) {
+    const Motion& motion = store.motion[p];
+    if (!streams_.removed(vec3(motion.position), time)) {
+      staying.push_back(p);
+      continue;
+    }
+    Departed gone;
+    gone.id = store.id[p];
+    gone.position = vec3(motion.position);
+    gone.velocity = vec3(motion.velocity);
+    gone.mass = 1 / motion.inverse_mass;
+    gone.cell = store.cell[p];
+    impulses.removed -= gone.mass * gone.velocity;
+    impulses.removed_mass += gone.mass;
+    leaving.push_back(gone);
+  }
+  const long long count = mpi_sum(static_cast<long long>(leaving.size()));
+  if (count == 0) return;
+  if (!detached_) detach();
+  store.ghosts = 0;
+  store.id.resize(store.owned);
+  store.reorder(staying, store.present);
+  memory_.rows.reorder(staying);
+  wall_memory_.reorder(staying);
+  started_ = false;  // the forces that those gone exerted must not act on
+  total -= count;
+  removed += count;
+  taken_out_.insert(taken_out_.end(), leaving.begin(), leaving.end());
+}
+
+}  // namespace silt
