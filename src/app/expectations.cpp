@@ -73,7 +73,7 @@ void ExpectationOptions::options(OptionGroup& option) {
   option("tolerance", tolerance, "", "largest error allowed", non_negative);
   option("mode", mode, {"relative", "absolute", "at_least", "at_most"},
          "how the error is taken; at_least and at_most: only what falls short or exceeds counts");
-  option("statistic", statistic, {"last", "mean", "minimum", "maximum", "amplitude", "frequency"},
+  option("statistic", statistic, {"last", "mean", "minimum", "maximum", "amplitude", "frequency", "rate"},
          "what is taken over the window; without window: of the whole run");
   option("at", at, "s", "time at which the quantity is taken, interpolated between steps");
   option("window", window, "s", "from, to: stretch of time over which the statistic (default: mean) is taken");
@@ -156,6 +156,7 @@ Expectations::Verdict Expectations::verdict(const ExpectationOptions& options, c
                  : statistic == "maximum"   ? *high
                  : statistic == "amplitude" ? 0.5 * (*high - *low)
                  : statistic == "frequency" ? frequency(t, v)
+                 : statistic == "rate"      ? (v.size() < 2 ? unknown : (v.back() - v.front()) / (t.back() - t.front()))
                                             : v.back();
     }
   }

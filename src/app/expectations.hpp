@@ -30,7 +30,8 @@ struct ExpectationOptions {
 /// `<probe>.<column>`, or, along a line or profile, `<line>.<column>` and `<profile>.<column>`.
 ///
 /// Through time: the value `at` a time (interpolated), or a `statistic` over a `window`: mean, minimum, maximum,
-/// amplitude (half of maximum less minimum), frequency (upward crossings of the mean, Hz); without either the last one.
+/// amplitude (half of maximum less minimum), frequency (upward crossings of the mean, Hz), rate (change per second
+/// between the ends of the window); without either the last one.
 /// Along a line: the mean absolute difference from `values`, or the mean (minimum, maximum) against `value`.
 class Expectations {
  public:
