@@ -139,51 +139,6 @@ void Engine::add(const std::vector<Seed>& seeds) {
   started_ = false;
 }
 
-void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
-  long long lost = 0;
-  std::string text;
-  for (const Gone& one : gone) {
-    Departed leaving;
-    leaving.id = one.id;
-    leaving.position = vec3(one.motion.position);
-    leaving.velocity = vec3(one.motion.velocity);
-    leaving.mass = 1 / one.motion.inverse_mass;
-    leaving.cell = one.cell;
-    leaving.boundary = one.boundary;
-    leaving.action = one.action;
-    leaving.columns = one.columns;
-    if (within_step) {
-      // It ends the step without contacts at its new place: the corrector for a force that has gone to zero.
-      const double z = one.action.exchange * one.motion.inverse_mass * h;
-      const double phi = z > 0 ? -std::expm1(-z) * h / z : h;
-      const double corrector = z > 1e-2 ? (1 - phi / h) * h / z : h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z / 120)));
-      for (int d = 0; d < (plane_ ? 2 : 3); ++d) {
-        leaving.velocity[d] -= corrector * one.motion.inverse_mass * one.carried.force[d];
-        const double drag = -(corrector - 0.5 * h) * one.carried.force[d];
-        leaving.action.impulse[d] += drag;
-        impulses.drag[d] += drag;
-      }
-    }
-    impulses.removed -= leaving.mass * leaving.velocity;
-    impulses.removed_mass += leaving.mass;
-    departed.push_back(leaving);
-    const bool open = one.boundary >= 0 && walls_.role(one.boundary) == BoundaryRole::open;
-    if (one.boundary < 0 || open || walls_.role(one.boundary) == BoundaryRole::wall) {
-      ++lost;
-      if (text.empty())
-        text = fmt::format("lost {} has passed {}{}", describe(one.motion, one.id),
-                           one.boundary < 0 ? "no boundary"
-                           : open           ? "the open boundary "
-                                            : "the wall ",
-                           one.boundary < 0 ? "" : walls_.name(one.boundary));
-    }
-  }
-  if (options_.lost == "stop")
-    stop_if_any(text);
-  else if (lost > 0)
-    fmt::print(stderr, "silt: warning: {} ({} lost on this rank)\n", text, lost);
-}
-
 void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   ++rebuilds_;
   if (fluid_) collect_fluid();

@@ -18,7 +18,7 @@ BoxCase vessel(const std::vector<std::pair<std::string, std::string>>& given) {
   BoxCase setup;
   setup.box({0, 0, 0}, {0.06, 0.06, 0.06});
   setup.gravity = Vec3(0, 0, -9.81);
-  setup.set("material_bead_young_modulus", "1e6");
+  setup.set("material_bead_young_modulus", "2e7");
   for (const auto& [name, value] : given) setup.set(name, value);
   return setup;
 }
