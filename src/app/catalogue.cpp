@@ -64,6 +64,7 @@ Options everything() {
   declare<OutputOptions>(options, "output");
   declare<CheckpointOptions>(options, "checkpoint");
   declare<RestartOptions>(options, "");
+  declare<BalanceOptions>(options, "balance");
   declare<ProbeOptions>(options, "probe_<name>");
   declare<LineOptions>(options, "line_<name>");
   declare<ProfileOptions>(options, "profile_<name>");

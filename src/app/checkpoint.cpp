@@ -26,7 +26,7 @@ bool Checkpoint::due(double time) {
   return is_due;
 }
 
-void Checkpoint::write(const std::string& path, const RunParts& parts, const RunClock& clock) {
+void Checkpoint::write(const std::string& path, const RunParts& parts, const RunClock& clock, const Costs& costs) {
   CheckpointWriter to;
   to.note("time", clock.time);
   to.note("dt", clock.dt);
@@ -34,6 +34,7 @@ void Checkpoint::write(const std::string& path, const RunParts& parts, const Run
   to.note("step", static_cast<double>(clock.step));
   to.note("has_fluid", parts.fluid != nullptr);
   to.note("has_particles", parts.particles != nullptr);
+  save_partition(parts.mesh, costs, to);
   if (parts.particles) parts.particles->save(to);
   if (parts.fluid) save_fields(parts.mesh, "fluid", parts.fluid->state(), to);
   if (parts.coupling) to.note("coupling_diameter", parts.coupling->largest_diameter());

@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 
+#include "app/balance.hpp"
 #include "app/moment.hpp"
 #include "base/checkpoint_file.hpp"
 #include "base/output_directory.hpp"
@@ -44,7 +45,7 @@ class Checkpoint {
   /// Whether a new multiple of the interval has been passed at this time.
   bool due(double time);
   /// Throws RunError on every rank. Collective.
-  static void write(const std::string& path, const RunParts& parts, const RunClock& clock);
+  static void write(const std::string& path, const RunParts& parts, const RunClock& clock, const Costs& costs);
 
   /// The file of `-restart`, when given. Throws UserError on every rank for one that is none. Collective.
   static std::unique_ptr<CheckpointReader> open(Options& options);

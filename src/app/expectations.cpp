@@ -132,6 +132,13 @@ void Expectations::sample(double time, const Quantities& quantities) {
   }
 }
 
+void Expectations::inherit(const Expectations& other) {
+  for (size_t k = 0; k < items_.size(); ++k) {
+    items_[k].times = other.items_[k].times;
+    items_[k].values = other.items_[k].values;
+  }
+}
+
 Expectations::Verdict Expectations::verdict(const ExpectationOptions& options, const std::vector<double>& times,
                                             const std::vector<double>& values) {
   double computed = unknown;

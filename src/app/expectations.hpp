@@ -42,6 +42,8 @@ class Expectations {
   bool empty() const { return items_.empty(); }
   /// Takes note of what is expected. Local.
   void sample(double time, const Quantities& quantities);
+  /// Takes over what another one of the same options has noted. Local.
+  void inherit(const Expectations& other);
   /// Prints a line for each figure, `case name expected computed error tolerance PASS|FAIL`, and writes
   /// `expectations.csv`; true when all are met. Collective.
   bool judge(const OutputDirectory& directory, const Probes& probes, const Profiles& profiles) const;

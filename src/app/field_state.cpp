@@ -22,18 +22,11 @@ Vec3 within_period(const Mesh& mesh, Vec3 x) {
   return x;
 }
 
-Vec3 centre_of(const Mesh& mesh, int cell) {
-  Vec3 sum = Vec3::Zero();
-  for (int a = 0; a < mesh.nodes_per_cell; ++a)
-    sum += vec3(&mesh.cell_coordinates[3 * (static_cast<std::size_t>(cell) * mesh.nodes_per_cell + a)]);
-  return sum / mesh.nodes_per_cell;
-}
-
 /// [nodes][6]: place, and mean direction to the cells around, which tells apart the two sides of a slit.
 std::vector<double> node_keys(const Mesh& mesh) {
   std::vector<double> around(4 * static_cast<std::size_t>(mesh.nodes), 0.0), keys;
   for (int c = 0; c < mesh.cells; ++c) {
-    const Vec3 centre = centre_of(mesh, c);
+    const Vec3 centre = mesh.centre(c);
     for (int a = 0; a < mesh.nodes_per_cell; ++a) {
       const std::size_t corner = static_cast<std::size_t>(c) * mesh.nodes_per_cell + a;
       double* sum = &around[4 * static_cast<std::size_t>(mesh.cell_nodes[corner])];
@@ -53,7 +46,7 @@ std::vector<double> node_keys(const Mesh& mesh) {
 std::vector<double> cell_keys(const Mesh& mesh) {
   std::vector<double> keys;
   for (int c = 0; c < mesh.cells; ++c) {
-    const Vec3 x = within_period(mesh, centre_of(mesh, c));
+    const Vec3 x = within_period(mesh, mesh.centre(c));
     keys.insert(keys.end(), {x[0], x[1], x[2]});
   }
   return keys;

@@ -26,6 +26,8 @@ class Profiles {
   Profiles(const Mesh& mesh, Options& options, bool with_particles);
   /// Adds the present state, weighted with the step's length, to the averages. Local.
   void sample(const Moment& moment);
+  /// Takes over the averages of another one of the same options. Local.
+  void inherit(const Profiles& other) { items_ = other.items_; }
   /// Writes the averages so far. Collective.
   void write(const OutputDirectory& directory);
   /// `<profile>.<column>` of every profile.

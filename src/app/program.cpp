@@ -94,8 +94,15 @@ int answer(const std::vector<std::string>& arguments) {
   }
   const bool check = options.find("check").has_value();
   options.insert_into_petsc();
-  const auto simulation = build(options);
-  return check ? simulation->check() : simulation->run();
+  auto simulation = build(options);
+  if (check) return simulation->check();
+  for (;;) {
+    const int code = simulation->run();
+    if (code != Simulation::share_out_anew) return code;
+    auto carried = simulation->carried();
+    simulation.reset();  // before the next one takes its memory
+    simulation = std::make_unique<Simulation>(options, std::move(carried));
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "app/catalogue.hpp"
 #include "base/error.hpp"
@@ -57,15 +58,18 @@ class Simulation::Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-Simulation::Simulation(Options& options) : options_(options) {
+Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
+    : options_(options), carried_(std::move(carried)) {
   options.read("", case_);
   options.read("time", time_options_);
   MeshOptions mesh;
   options.read("mesh", mesh);
-  mesh_ = std::make_unique<Mesh>(mesh);
-  refuse_unknown_boundaries(*mesh_, options);
   checkpoint_ = std::make_unique<Checkpoint>(options);
+  balance_ = std::make_unique<Balance>(options);
   restart_ = Checkpoint::open(options);
+  if (carried_) restart_ = std::make_unique<CheckpointReader>(carried_->file);
+  mesh_ = std::make_unique<Mesh>(mesh, restart_ ? partition_of(*restart_, carried_ != nullptr) : Partition{});
+  refuse_unknown_boundaries(*mesh_, options);
   fluid_ = Fluid::create(*mesh_, options, case_.gravity);
   particles_ = Particles::create(*mesh_, options, case_.gravity, restart_ != nullptr);
   if (!fluid_ && !particles_)
@@ -73,7 +77,7 @@ Simulation::Simulation(Options& options) : options_(options) {
   if (restart_) {
     if ((restart_->number("has_particles") != 0) != (particles_ != nullptr))
       restart_->refuse(particles_ ? "has no particles, this case has some" : "has particles, this case has none");
-    if (particles_) particles_->load(*restart_);
+    if (particles_) particles_->load(*restart_, carried_ != nullptr);
   }
   if (fluid_ && particles_)
     coupling_ = std::make_unique<Coupling>(*mesh_, *particles_, *fluid_, options, case_.gravity);
@@ -131,6 +135,7 @@ int Simulation::run() {
     step();
     report();
     if (checkpoint_->due(now_.time)) write_checkpoint("checkpoint.h5");
+    if (balance_->due(now_.time) && uneven()) return share_out_anew;
   }
   finish();
   return expectations_->judge(output_->directory(), *probes_, *profiles_) ? 0 : 1;
@@ -138,10 +143,25 @@ int Simulation::run() {
 
 void Simulation::start() {
   restart_ ? output_->resume(record_of(options_), now_.time, restart_->path()) : output_->start(record_of(options_));
-  progress_->header(description());
+  if (carried_) {
+    reached_ = Balance::imbalance(*mesh_, particles_.get(),
+                                  {restart_->number("cost_particle"), restart_->number("cost_cell")});
+    progress_->line(
+        fmt::format("t = {:g} s: the work is shared out anew, the busiest rank had {:.3g} of the mean, now {:.3g}",
+                    now_.time, carried_->reached, reached_));
+    expectations_->inherit(*carried_->expectations);
+    profiles_->inherit(*carried_->profiles);
+    seconds_before_ = carried_->seconds;
+    for (int k = 0; k < tasks; ++k) seconds_[k] += seconds_before_[k];
+    if (mpi_rank() == 0) std::filesystem::remove(carried_->file);
+    carried_.reset();
+  } else {
+    progress_->header(description());
+  }
   if (particles_ && !restart_) particles_->settle();
   if (coupling_ && !restart_) coupling_->start();
   checkpoint_->start(now_.time);
+  balance_->start(now_.time);
   diagnostics_->start(output_->directory());
   probes_->start(output_->directory());
   budget_->start(output_->directory(), fluid_.get(), particles_.get());
@@ -220,7 +240,26 @@ std::string Simulation::save_last_good() {
 void Simulation::write_checkpoint(const std::string& file) {
   const Stopwatch watch(*this, writing);
   Checkpoint::write(output_->directory().path(file), {*mesh_, fluid_.get(), particles_.get(), coupling_.get()},
-                    {now_.time, now_.dt, shortened_, now_.step});
+                    {now_.time, now_.dt, shortened_, now_.step}, costs());
+}
+
+Costs Simulation::costs() const {
+  const auto here = [this](Task task) { return seconds_[task] - seconds_before_[task]; };
+  return Balance::measure(*mesh_, particles_.get(), here(moving_particles), here(solving_fluid) + here(exchanging));
+}
+
+/// Whether the work should be shared out anew; if so the state is written for the run that goes on from it.
+bool Simulation::uneven() {
+  const double imbalance = Balance::imbalance(*mesh_, particles_.get(), costs());
+  if (!balance_->worthwhile(imbalance, reached_)) return false;
+  write_checkpoint("balance.h5");
+  carried_ = std::make_unique<Carried>();
+  carried_->file = output_->directory().path("balance.h5");
+  carried_->reached = imbalance;
+  carried_->expectations = std::move(expectations_);
+  carried_->profiles = std::move(profiles_);
+  std::copy(seconds_.begin(), seconds_.end(), carried_->seconds.begin());
+  return true;
 }
 
 /// Particles first, with the flow of the step's start; then the flow, with what they did to it; then the account is

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "app/balance.hpp"
 #include "app/budget.hpp"
 #include "app/checkpoint.hpp"
 #include "app/departures.hpp"
@@ -44,12 +45,26 @@ struct TimeOptions {
 class Simulation {
  public:
   /// Reads every option and builds the parts; throws UserError before anything is computed or written. Collective.
-  explicit Simulation(Options& options);
+  explicit Simulation(Options& options) : Simulation(options, nullptr) {}
+
+  /// What a run hands on when its work is shared out anew: the file of its state, and what has been seen so far.
+  struct Carried {
+    std::string file;
+    double reached = 0;  ///< imbalance before
+    std::unique_ptr<Expectations> expectations;
+    std::unique_ptr<Profiles> profiles;
+    std::array<double, 4> seconds{};
+  };
+  /// Goes on from another one, on other cells of the mesh. Collective.
+  Simulation(Options& options, std::unique_ptr<Carried> carried);
 
   /// Says what would run and returns 0. Collective.
   int check();
-  /// Runs to the end; returns 0, or 1 when an expected figure was missed. Collective.
+  /// Runs to the end; returns 0, or 1 when an expected figure was missed; or `share_out_anew`, with carried() to go on
+  /// from. Collective.
   int run();
+  static constexpr int share_out_anew = -1;
+  std::unique_ptr<Carried> carried() { return std::move(carried_); }
 
  private:
   void start();
@@ -59,6 +74,8 @@ class Simulation {
   void report();
   void write_checkpoint(const std::string& file);
   void keep_state();
+  bool uneven();
+  Costs costs() const;
   /// Goes back to the last good state, writes it and returns words about it for the error that ends the run.
   std::string save_last_good();
   void finish();
@@ -83,6 +100,9 @@ class Simulation {
   std::unique_ptr<Progress> progress_;
 
   std::unique_ptr<Checkpoint> checkpoint_;
+  std::unique_ptr<Balance> balance_;
+  std::unique_ptr<Carried> carried_;           ///< from the run before, or for the one after
+  double reached_ = 0;                         ///< imbalance when the work was last shared out anew
   std::unique_ptr<CheckpointReader> restart_;  ///< what the run goes on from; null for a fresh run
 
   /// A state to go back to.
@@ -101,7 +121,8 @@ class Simulation {
   /// Where the wall time of the loop goes.
   enum Task { moving_particles, solving_fluid, exchanging, writing, tasks };
   class Stopwatch;
-  std::array<double, tasks> seconds_{};
+  std::array<double, tasks> seconds_{}, seconds_before_{};  ///< in all, and on earlier partitions
+  static_assert(tasks == 4);
 };
 
 }  // namespace silt

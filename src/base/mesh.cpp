@@ -95,8 +95,8 @@ std::vector<int> sharing_ranks(DM plex, PetscInt points, std::vector<char>& owne
 
 }  // namespace
 
-Mesh::Mesh(const MeshOptions& options) {
-  create(options);
+Mesh::Mesh(const MeshOptions& options, const Partition& partition) {
+  create(options, partition);
   extract();
   if (options.scale != 1) {
     for (auto& x : cell_coordinates) x *= options.scale;
@@ -367,6 +367,13 @@ std::array<Vec3, 4> Mesh::facet_corners(const BoundaryFacet& facet) const {
   for (int a = 0; a < facet_nodes(cell); ++a)
     corners[a] = vec3(&cell_coordinates[3 * (static_cast<size_t>(facet.cell) * nodes_per_cell + list[a])]);
   return corners;
+}
+
+Vec3 Mesh::centre(int cell) const {
+  Vec3 sum = Vec3::Zero();
+  for (int a = 0; a < nodes_per_cell; ++a)
+    sum += vec3(&cell_coordinates[3 * (static_cast<size_t>(cell) * nodes_per_cell + a)]);
+  return sum / nodes_per_cell;
 }
 
 void Mesh::sum_shared(double* values, int components) const {

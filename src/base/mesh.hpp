@@ -22,6 +22,14 @@ struct MeshOptions {
   void options(OptionGroup& option);
 };
 
+/// What decides the partition of a mesh besides `-mesh_weight`: where the work of a run is, or who had which cell.
+struct Partition {
+  std::vector<Vec3> points;                 ///< m, of particles, the same on every rank
+  double particle_cost = 0, cell_cost = 1;  ///< cost of a particle and of a cell, in any unit
+  std::vector<Vec3> cells;                  ///< m, centres of cells whose rank is given, the same on every rank
+  std::vector<int> ranks;                   ///< of each of them; empty: to be found
+};
+
 /// One facet of the domain's boundary, owned by the rank that owns its cell.
 struct BoundaryFacet {
   int cell;      ///< local cell
@@ -38,7 +46,9 @@ struct BoundaryFacet {
 class Mesh {
  public:
   /// Creates, distributes (PTScotch) and checks the mesh; throws UserError for a bad file or option. Collective.
-  Mesh(const MeshOptions& options);
+  Mesh(const MeshOptions& options, const Partition& partition = {});
+  /// Mean of the corners of a local cell. m
+  Vec3 centre(int cell) const;
 
   DM plex() const { return plex_; }
 
@@ -82,8 +92,9 @@ class Mesh {
   double dot(const double* a, const double* b, int components) const;
 
  private:
-  void create(const MeshOptions& options);
-  void weigh(const std::string& weight);
+  void create(const MeshOptions& options, const Partition& partition);
+  void weigh(const std::string& weight, const Partition& partition, double scale);
+  void assign(const Partition& partition, double scale);
   void extract();
   void extract_boundaries();
 

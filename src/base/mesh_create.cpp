@@ -174,35 +174,7 @@ void MeshOptions::options(OptionGroup& option) {
   option("scale", scale, "-", "factor on the coordinates of a mesh file (0.001: written in mm)", positive);
 }
 
-/// PETSc takes the unknowns of a cell, as its local section counts them, for the cell's weight in the partition.
-void Mesh::weigh(const std::string& weight) {
-  const Expression cost("mesh_weight", weight);
-  if (cost.constant()) return;
-  PetscInt first = 0, last = 0, space = 0;
-  SILT_PETSC(DMPlexGetHeightStratum(plex_, 0, &first, &last));
-  SILT_PETSC(DMGetCoordinateDim(plex_, &space));
-  std::vector<PetscInt> costs;
-  std::string bad;
-  for (PetscInt c = first; c < last; ++c) {
-    PetscReal size;
-    double centre[3] = {0, 0, 0};
-    SILT_PETSC(DMPlexComputeCellGeometryFVM(plex_, c, &size, centre, nullptr));
-    const double value = cost(Vec3(centre[0], centre[1], space > 2 ? centre[2] : 0), 0);
-    if (!(value > 0) || value > 1e6) bad = fmt::format("{:g}", value);
-    costs.push_back(static_cast<PetscInt>(std::ceil(value)));
-  }
-  if (mpi_any(!bad.empty()))
-    throw UserError(fmt::format("option -mesh_weight: '{}' must lie between 0 and 1e6 everywhere", weight));
-  PetscSection section;
-  SILT_PETSC(PetscSectionCreate(PETSC_COMM_WORLD, &section));
-  SILT_PETSC(PetscSectionSetChart(section, first, last));
-  for (PetscInt c = first; c < last; ++c) SILT_PETSC(PetscSectionSetDof(section, c, costs[c - first]));
-  SILT_PETSC(PetscSectionSetUp(section));
-  SILT_PETSC(DMSetLocalSection(plex_, section));
-  SILT_PETSC(PetscSectionDestroy(&section));
-}
-
-void Mesh::create(const MeshOptions& options) {
+void Mesh::create(const MeshOptions& options, const Partition& partition) {
   const bool box = options.type == "box";
   plex_ = box ? create_box(options) : read_gmsh(options.file);
   if (mpi_size() == 1) return;
@@ -212,9 +184,13 @@ void Mesh::create(const MeshOptions& options) {
   SILT_PETSC(DMPlexGetHeightStratum(plex_, 0, &first, &last));
   // PTScotch cannot split fewer cells than ranks; those meshes only occur in tests and demonstrations.
   const bool tiny = mpi_sum(static_cast<long long>(last - first)) < 2LL * mpi_size();
-  SILT_PETSC(PetscPartitionerSetType(partitioner, tiny ? PETSCPARTITIONERSIMPLE : PETSCPARTITIONERPTSCOTCH));
-  SILT_PETSC(PetscPartitionerSetFromOptions(partitioner));
-  weigh(options.weight);
+  if (!partition.ranks.empty()) {
+    assign(partition, options.scale);
+  } else {
+    SILT_PETSC(PetscPartitionerSetType(partitioner, tiny ? PETSCPARTITIONERSIMPLE : PETSCPARTITIONERPTSCOTCH));
+    SILT_PETSC(PetscPartitionerSetFromOptions(partitioner));
+    weigh(options.weight, partition, options.scale);
+  }
   DmHandle distributed;
   SILT_PETSC(DMPlexDistribute(plex_, 0, nullptr, distributed.out()));
   if (distributed) plex_ = std::move(distributed);

@@ -21,7 +21,7 @@ constexpr const char* record_name = "run.yaml";
 bool is_ours(const fs::path& relative) {
   static const std::regex pattern(
       R"((run\.yaml|fluid\.xdmf|particles\.xdmf|(diagnostics|boundaries|ledger)\.csv|(removed|walls|expectations)\.csv|)"
-      R"((probe|line|profile|wall)_.*\.csv|(checkpoint|last_good)\.h5|(fluid|particles)/(mesh(_\d+)?|\d{6,})\.h5)(\.part)?)");
+      R"((probe|line|profile|wall)_.*\.csv|(checkpoint|last_good|balance)\.h5|(fluid|particles)/(mesh(_\d+)?|\d{6,})\.h5)(\.part)?)");
   return std::regex_match(relative.generic_string(), pattern);
 }
 

@@ -9,11 +9,23 @@
 #include "fluid/pressure_correction/pressure_correction.hpp"
 
 namespace silt {
+namespace {
+
+/// Whether the case says anything of a fluid: where it does not, the particles are alone.
+bool mentioned(const Mesh& mesh, const Options& options) {
+  for (const auto& name : Options::declared<FluidOptions>())
+    if (options.given("fluid_" + name)) return true;
+  for (const auto& name : mesh.boundaries)
+    if (options.given("boundary_" + name + "_type")) return true;
+  return false;
+}
+
+}  // namespace
 
 std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const Vec3& gravity) {
   FluidOptions fluid;
   options.read("fluid", fluid);
-  if (fluid.type == "none") return nullptr;
+  if (fluid.type == "none" || !mentioned(mesh, options)) return nullptr;
   for (const char* name : {"fluid_density", "fluid_viscosity"})
     if (!options.given(name)) throw UserError(std::string("-") + name + " is missing: the fluid needs it");
   if (fluid.scheme != "monolithic" && options.find("fluid_element").value_or("equal_order") != "equal_order")

@@ -67,7 +67,7 @@ class Engine {
   std::shared_ptr<const Particles::Snapshot> snapshot() const;
   void restore(const Particles::Snapshot& snapshot);
   void save(CheckpointWriter& to);
-  void load(const CheckpointReader& from);
+  void load(const CheckpointReader& from, bool elsewhere);
   void load_columns(const CheckpointReader& from);
 
   /// Momentum etc. that this rank's particles received since the last take_impulses().

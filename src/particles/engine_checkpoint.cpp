@@ -99,7 +99,7 @@ void Engine::save(CheckpointWriter& to) {
   to.note("walls", walls);
 }
 
-void Engine::load(const CheckpointReader& from) {
+void Engine::load(const CheckpointReader& from, bool elsewhere) {
   std::string names, walls;
   for (int m = 0; m < materials.count(); ++m) names += materials[m].name + " ";
   for (int w = 0; w < walls_.count(); ++w) walls += walls_.name(w) + " ";
@@ -111,7 +111,7 @@ void Engine::load(const CheckpointReader& from) {
     from.refuse("was written by another version of Silt: a particle has other properties there");
 
   const auto each = from.wholes("particles_each_rank");
-  const bool same_ranks = static_cast<int>(each.size()) == mpi_size();
+  const bool same_ranks = static_cast<int>(each.size()) == mpi_size() && !elsewhere;
   const long long all = from.rows("particle_id"), rank = mpi_rank(), ranks = mpi_size();
   long long first = all * rank / ranks, last = all * (rank + 1) / ranks;
   if (same_ranks) {

@@ -50,7 +50,7 @@ FluidAction& Particles::fluid_action(int i) { return impl_->store.action[i]; }
 std::shared_ptr<const Particles::Snapshot> Particles::snapshot() const { return impl_->snapshot(); }
 void Particles::restore(const Snapshot& snapshot) { impl_->restore(snapshot); }
 void Particles::save(CheckpointWriter& to) { impl_->save(to); }
-void Particles::load(const CheckpointReader& from) { impl_->load(from); }
+void Particles::load(const CheckpointReader& from, bool elsewhere) { impl_->load(from, elsewhere); }
 void Particles::load_columns(const CheckpointReader& from) { impl_->load_columns(from); }
 DM Particles::swarm() { return impl_->swarm.refresh(impl_->mesh, impl_->store); }
 

@@ -102,9 +102,10 @@ class Particles {
   void restore(const Snapshot& snapshot);
   /// Adds the whole state to a checkpoint: motion, fluid action, contact memory, walls' motion, counters. Collective.
   void save(CheckpointWriter& to);
-  /// Goes on from a checkpoint, on any number of ranks; with that of the run that wrote it, with the same bits. Throws
-  /// UserError for one of other materials, walls or contact laws. Collective.
-  void load(const CheckpointReader& from);
+  /// Goes on from a checkpoint, on any number of ranks; with that of the run that wrote it, with the same bits.
+  /// `elsewhere`: the cells are shared out in another way. Throws UserError for one of other materials, walls or
+  /// contact laws. Collective.
+  void load(const CheckpointReader& from, bool elsewhere = false);
   /// Then, once every model has asked for its columns, their values. Collective.
   void load_columns(const CheckpointReader& from);
 

@@ -131,6 +131,7 @@ WRONG = [
     ("a particle step too long for the contacts", {}, options("-particles_step", "1e-3"), ["-particles_step"]),
     ("settling for a negative time", {}, options("-settle_time", "-1"), ["-settle_time"]),
     ("nothing to run", {"case.yaml": BOX_ONLY + "fluid: {type: none}\n"}, [], ["fluid_type", "insertion"]),
+    ("nothing said of a fluid or particles", {"case.yaml": BOX_ONLY}, [], ["fluid_type", "insertion"]),
     # output and figures
     ("a file in place of the output directory", {"out": "mine"}, [], ["out", "-output_directory"]),
     ("an output directory below a file", {"mine": ""}, options("-output_directory", "mine/out"), ["mine/out"]),
