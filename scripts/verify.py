@@ -9,7 +9,7 @@ import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PAGE = os.path.join(ROOT, "docs", "verification.md")
-FOLDERS = ("inputs", "inputs/verification", "tests/cases")
+FOLDERS = ("inputs", "inputs/verification", "inputs/models", "tests/cases")
 # case quantity expected computed error tolerance PASS|FAIL
 FIGURE = re.compile(r"^(\S+) (\S+) (\S+) (\S+) (\S+) (\S+) (PASS|FAIL)\s*$", re.M)
 HEAD = """# Verification
@@ -90,7 +90,7 @@ def main():
     arguments = parser.parse_args()
 
     known = find_cases()
-    cases = [case for case in known if arguments.pattern in case.name and (case.short or not arguments.short)]
+    cases = [case for case in known if arguments.pattern in case.path and (case.short or not arguments.short)]
     if arguments.list:
         for case in cases:
             print(case.path, "short" if case.short else "")

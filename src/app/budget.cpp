@@ -42,7 +42,8 @@ void Budget::start(const OutputDirectory& directory, const Fluid* fluid, Particl
                                       "taken_residual", "mass_residual"};
   if (with_fluid_) add_columns(columns, {"fluid_momentum", "boundary_impulse", "unaccounted"});
   if (with_particles_) {
-    add_columns(columns, {"particle_momentum", "gravity", "walls", "drag", "fluid_force", "kicks", "added", "removed"});
+    add_columns(columns, {"particle_momentum", "gravity", "walls", "drag", "fluid_force", "kicks", "added", "removed",
+                          "fields"});
     columns.insert(columns.end(), {"particle_mass", "added_mass", "removed_mass"});
   }
   if (with_fluid_ && with_particles_) {
@@ -67,10 +68,11 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeL
   if (particles) {
     in = particles->take_impulses();
     momentum = particles->momentum();
-    const Vec3 sum = in.gravity + in.walls + in.drag + in.fluid_force + in.kicks + in.added + in.removed;
+    const Vec3 sum = in.gravity + in.walls + in.drag + in.fluid_force + in.kicks + in.added + in.removed + in.fields;
     mass = particles->total_mass();
-    double scale = std::sqrt(2 * mass * particles->kinetic_energy());
-    for (const Vec3* v : {&in.gravity, &in.walls, &in.drag, &in.fluid_force, &in.kicks, &in.added, &in.removed})
+    double scale = std::sqrt(2 * mass * particles->kinetic_energy()) + in.exchanged;
+    for (const Vec3* v :
+         {&in.gravity, &in.walls, &in.drag, &in.fluid_force, &in.kicks, &in.added, &in.removed, &in.fields})
       scale += v->norm();
     scale = std::max(scale, 1e-300);
     particle_residual = (momentum - particle_momentum_ - sum).norm() / scale;
@@ -80,8 +82,9 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeL
     // A particle that left during the step took with it what it was owed: that is in its removal.
     if (exchange && in.removed.norm() == 0)
       taken_residual =
-          largest({(in.drag - exchange->drag_on_particles).norm(), (in.kicks - exchange->given_at_once).norm(),
-                   (in.fluid_force - exchange->delivered - exchange->buoyancy).norm()}) /
+          largest(
+              {(in.drag - exchange->drag_on_particles).norm(), (in.kicks - exchange->given_at_once).norm(),
+               (in.fluid_force - exchange->delivered - exchange->buoyancy - exchange->forces_on_particles).norm()}) /
           scale;
   }
   const double residual = largest({exchange_residual, particle_residual, taken_residual});
@@ -101,7 +104,8 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeL
     add(row, unaccounted);
   }
   if (with_particles_) {
-    for (const Vec3& v : {momentum, in.gravity, in.walls, in.drag, in.fluid_force, in.kicks, in.added, in.removed})
+    for (const Vec3& v :
+         {momentum, in.gravity, in.walls, in.drag, in.fluid_force, in.kicks, in.added, in.removed, in.fields})
       add(row, v);
     row.insert(row.end(), {mass, in.added_mass, in.removed_mass});
   }

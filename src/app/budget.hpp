@@ -18,8 +18,10 @@ struct LedgerOptions {
 /// The conservation ledger, `ledger.csv`, a row a step (N s unless said otherwise):
 ///  - exchange_residual: largest imbalance between what fluid and particles gave each other and of the particle volume
 ///    in the void fraction, relative to the magnitudes that were summed (ExchangeLedger);
-///  - particle_residual: |change of the particles' momentum - impulses of gravity, walls, drag, other fluid forces,
-///    kicks, insertion and removal|, relative to those impulses and to sqrt(2 M E), the size of the momenta summed;
+///  - particle_residual: |change of the particles' momentum - impulses of gravity, walls, applied fields, drag, other
+///  fluid forces,
+///    kicks, insertion and removal|, relative to those impulses, to what fields made particles give each other and to
+///    sqrt(2 M E), the size of the momenta summed;
 ///  - taken_residual: what the particles say they received from the fluid against what the coupling gave, same scale;
 ///  - mass_residual: the fluid's volume balance as the fluid reports it, relative to its inflow;
 ///  - unaccounted_*: change of the fluid's momentum less the impulses through the boundary and of the particles; it

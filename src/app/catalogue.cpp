@@ -5,12 +5,20 @@
 
 #include "app/simulation.hpp"
 #include "coupling/drag/drag_models.hpp"
+#include "coupling/fluid_forces.hpp"
+#include "coupling/heat/nusselt.hpp"
+#include "coupling/thermophoresis.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
 #include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/monolithic.hpp"
+#include "fluid/prescribed.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
+#include "particles/brownian.hpp"
 #include "particles/contact_models.hpp"
+#include "particles/field/electric.hpp"
+#include "particles/field/magnetic.hpp"
+#include "particles/heat/particle_heat.hpp"
 #include "particles/insertion/insertion_options.hpp"
 #include "particles/insertion/streams.hpp"
 #include "particles/materials.hpp"
@@ -45,8 +53,10 @@ Options everything() {
   declare<EnergyOptions>(options, "fluid");
   declare<PressureCorrectionOptions>(options, "fluid");
   declare<MonolithicOptions>(options, "fluid");
+  declare<PrescribedOptions>(options, "fluid");
   declare<BoundaryOptions>(options, "boundary_<name>");
   declare<WallBoundaryOptions>(options, "boundary_<name>");
+  declare<PotentialBoundaryOptions>(options, "boundary_<name>");
   declare<WallOptions>(options, "walls");
   declare<RigidWallOptions>(options, "wall_<name>");
   declare<Material>(options, "material_<name>");
@@ -56,10 +66,22 @@ Options everything() {
   declare(options, "rolling", RollingModels{}, "rolling resistance");
   declare(options, "twisting", TwistingModels{}, "twisting resistance");
   declare<ParticleOptions>(options, "particles");
+  declare<BrownianOptions>(options, "brownian");
+  declare(options, "magnetic", MagneticModels{}, "magnetic moment of the particles");
+  declare<MagneticOptions>(options, "magnetic");
+  declare<ElectricOptions>(options, "electric");
+  declare<HeatOptions>(options, "heat");
   declare<InsertionOptions>(options, "insertion_<name>");
   declare<RemovalOptions>(options, "removal_<name>");
   declare<SettleOptions>(options, "settle");
   declare(options, "drag", DragModels{}, "drag law");
+  declare(options, "saffman", SaffmanModels{}, "lift by shear");
+  declare(options, "magnus", MagnusModels{}, "lift by spin");
+  declare<VirtualMassOptions>(options, "virtual_mass");
+  declare(options, "viscous_torque", ViscousTorqueModels{}, "viscous torque on the spin");
+  declare(options, "thermophoresis", ThermophoresisModels{}, "force by a temperature gradient of the gas");
+  declare<ThermophoresisOptions>(options, "thermophoresis");
+  declare(options, "nusselt", NusseltModels{}, "heat transfer between fluid and particles");
   declare<CouplingOptions>(options, "coupling");
   declare<OutputOptions>(options, "output");
   declare<CheckpointOptions>(options, "checkpoint");
@@ -86,6 +108,12 @@ void each_model(Act&& act) {
   each_of("rolling", RollingModels{}, act);
   each_of("twisting", TwistingModels{}, act);
   each_of("drag", DragModels{}, act);
+  each_of("saffman", SaffmanModels{}, act);
+  each_of("magnus", MagnusModels{}, act);
+  each_of("viscous_torque", ViscousTorqueModels{}, act);
+  each_of("thermophoresis", ThermophoresisModels{}, act);
+  each_of("nusselt", NusseltModels{}, act);
+  each_of("magnetic", MagneticModels{}, act);
 }
 
 template <class Model>

@@ -38,6 +38,7 @@ void Checkpoint::write(const std::string& path, const RunParts& parts, const Run
   if (parts.particles) parts.particles->save(to);
   if (parts.fluid) save_fields(parts.mesh, "fluid", parts.fluid->state(), to);
   if (parts.coupling) to.note("coupling_diameter", parts.coupling->largest_diameter());
+  if (parts.coupling) to.note("coupling_last_step", parts.coupling->last_step());
   if (parts.coupling) save_fields(parts.mesh, "coupling", parts.coupling->state(), to);
   to.write(path);
 }
@@ -58,7 +59,7 @@ RunClock Checkpoint::load(const CheckpointReader& from, const RunParts& parts) {
   }
   if (parts.coupling) {
     load_fields(parts.mesh, "coupling", parts.coupling->state(), from);
-    parts.coupling->restored(from.number("coupling_diameter"));
+    parts.coupling->restored(from.number("coupling_diameter"), from.number("coupling_last_step"));
   }
   return {from.number("time"), from.number("dt"), from.number("shortened"),
           static_cast<long long>(from.number("step"))};

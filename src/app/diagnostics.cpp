@@ -64,16 +64,29 @@ double facet_area(const Mesh& mesh, const BoundaryFacet& facet) {
 }  // namespace
 
 Diagnostics::Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity, const Fluid* fluid,
-                         bool with_particles)
+                         const Particles* particles)
     : mesh_(mesh),
       up_(gravity.norm() > 0 ? Vec3(-gravity.normalized()) : Vec3::Unit(mesh.dimension - 1)),
       with_fluid_(fluid != nullptr),
       with_heat_(fluid && !fluid->temperature().empty()),
-      with_particles_(with_particles),
+      with_particles_(particles != nullptr),
       columns_(step_columns) {
   if (with_fluid_) append(columns_, fluid_columns);
   if (with_heat_) append(columns_, heat_columns);
-  if (with_particles) append(columns_, particle_columns);
+  if (particles) {
+    append(columns_, particle_columns);
+    const Columns& columns = particles->columns();
+    for (int c = 0; c < columns.count(); ++c) {
+      const ColumnRequest& column = columns.request(c);
+      if (!column.output) continue;
+      carried_.push_back(c);
+      for (int k = 0; k < column.width; ++k)
+        columns_.push_back(fmt::format("mean_{}_of_particles{}", column.name,
+                                       column.width == 1   ? ""
+                                       : column.width == 3 ? fmt::format("_{}", "xyz"[k])
+                                                           : fmt::format("_{}", k)));
+    }
+  }
   bottom_ = 0;
   double top = 0;
   for (int d = 0; d < 3; ++d) {
@@ -207,6 +220,15 @@ void Diagnostics::measure_particles(const Particles& particles, std::vector<doub
        {bed, height_95, solids, particles.kinetic_energy(), particles.rotational_energy(), std::sqrt(mpi_max(fastest)),
         centre[0], centre[1], centre[2], velocity[0], velocity[1], velocity[2]})
     row.push_back(value);
+  const Columns& columns = particles.columns();
+  for (const int c : carried_) {
+    const int width = columns.request(c).width;
+    std::vector<double> mean(width, 0.0);
+    for (int i = 0; i < particles.owned(); ++i)
+      for (int k = 0; k < width; ++k) mean[k] += columns.row(c, i)[k] / static_cast<double>(particles.total());
+    MPI_Allreduce(MPI_IN_PLACE, mean.data(), width, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    row.insert(row.end(), mean.begin(), mean.end());
+  }
 }
 
 }  // namespace silt

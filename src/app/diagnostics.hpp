@@ -16,12 +16,15 @@ namespace silt {
 /// - bed_height_95: below it lie 95 % of the particles' volume;
 /// - bed_solids: the particles' volume over cross-section times bed_height (cross-section: mesh volume over its
 /// height);
+/// - mean_temperature_of_particles, mean_charge_of_particles, mean_magnetic_moment_of_particles_x ...: the mean over
+/// the
+///   particles of what they carry besides their motion.
 /// - pressure_drop: mean pressure of the boundaries where fluid is given (velocity, mass_flow) minus that of the
 ///   pressure boundaries; where there are no such two, the largest minus the least mean pressure of a boundary.
 ///   It is the pressure the fluid is solved for: without the static head rho g.x unless `-fluid_hydrostatic yes`.
 class Diagnostics {
  public:
-  Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity, const Fluid* fluid, bool with_particles);
+  Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity, const Fluid* fluid, const Particles* particles);
   /// Opens the files. Collective.
   void start(const OutputDirectory& directory);
   /// Measures, writes a row, and adds every column to `quantities`. Collective.
@@ -37,6 +40,7 @@ class Diagnostics {
   Vec3 up_;
   double bottom_, height_;
   bool with_fluid_, with_heat_, with_particles_;
+  std::vector<int> carried_;  ///< columns of the particles whose means are recorded
   std::vector<std::string> columns_, boundary_columns_;
   std::vector<int> role_;            ///< of each boundary: 1 fluid is given, -1 pressure is given, 0 neither
   std::vector<double> area_, mass_;  ///< area of each boundary; volume that belongs to each node

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
 #include "particles/insertion/insertion_options.hpp"
+#include "particles/potential.hpp"
 #include "particles/walls/wall_boundary.hpp"
 
 namespace silt {
@@ -20,6 +21,7 @@ namespace {
 void refuse_unknown_boundaries(const Mesh& mesh, const Options& options) {
   auto properties = Options::declared<BoundaryOptions>();
   for (const auto& property : Options::declared<WallBoundaryOptions>()) properties.push_back(property);
+  for (const auto& property : Options::declared<PotentialBoundaryOptions>()) properties.push_back(property);
   for (const auto& name : options.names("boundary", properties)) {
     if (std::find(mesh.boundaries.begin(), mesh.boundaries.end(), name) != mesh.boundaries.end()) continue;
     const std::string hint = nearest(name, mesh.boundaries);
@@ -81,9 +83,11 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
   }
   if (fluid_ && particles_)
     coupling_ = std::make_unique<Coupling>(*mesh_, *particles_, *fluid_, options, case_.gravity);
+  if (!coupling_ && options.given("brownian_temperature"))
+    throw UserError("-brownian_temperature needs a fluid whose drag goes with the noise (-fluid_type)");
   const bool flow = fluid_ != nullptr, grains = particles_ != nullptr;
   output_ = std::make_unique<Output>(*mesh_, options, flow, grains);
-  diagnostics_ = std::make_unique<Diagnostics>(*mesh_, options, case_.gravity, fluid_.get(), grains);
+  diagnostics_ = std::make_unique<Diagnostics>(*mesh_, options, case_.gravity, fluid_.get(), particles_.get());
   probes_ = std::make_unique<Probes>(*mesh_, options, fluid_.get());
   profiles_ = std::make_unique<Profiles>(*mesh_, options, grains);
   budget_ = std::make_unique<Budget>(options, flow, grains);

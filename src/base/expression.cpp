@@ -15,7 +15,9 @@ Expression::Expression(const std::string& option, const std::string& text)
     parser_->DefineConst("pi", 3.14159265358979323846);
     parser_->SetExpr(text);
     parser_->Eval();
-    constant_ = parser_->GetUsedVar().empty();
+    const auto& used = parser_->GetUsedVar();
+    constant_ = used.empty();
+    uniform_ = !used.count("x") && !used.count("y") && !used.count("z");
   } catch (const mu::Parser::exception_type& e) {
     throw UserError(fmt::format("option -{}: '{}' is not a formula in x, y, z, t: {}", option, text, e.GetMsg()));
   }
@@ -53,6 +55,10 @@ Vec3 VectorExpression::operator()(const Vec3& x, double t) const {
 
 bool VectorExpression::constant() const {
   return components_[0]->constant() && components_[1]->constant() && components_[2]->constant();
+}
+
+bool VectorExpression::uniform() const {
+  return components_[0]->uniform() && components_[1]->uniform() && components_[2]->uniform();
 }
 
 }  // namespace silt

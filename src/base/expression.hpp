@@ -22,11 +22,13 @@ class Expression {
   double operator()(const Vec3& x, double t) const;
   /// True when the value depends on none of x, y, z, t.
   bool constant() const { return constant_; }
+  /// True when the value depends on none of x, y, z.
+  bool uniform() const { return uniform_; }
 
  private:
   std::unique_ptr<mu::Parser> parser_;
   std::unique_ptr<std::array<double, 4>> variables_;
-  bool constant_ = false;
+  bool constant_ = false, uniform_ = false;
 };
 
 /// Three formulas separated by commas: "0, 0, 0.6*min(t/0.1, 1)".
@@ -35,6 +37,7 @@ class VectorExpression {
   VectorExpression(const std::string& option, const std::string& text);
   Vec3 operator()(const Vec3& x, double t) const;
   bool constant() const;
+  bool uniform() const;
 
  private:
   std::array<std::unique_ptr<Expression>, 3> components_;

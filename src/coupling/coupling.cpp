@@ -46,6 +46,10 @@ Coupling::Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options
       mass_(lumped_mass(mesh)) {
   options.read("coupling", options_);
   drag_ = DragModels::read(options, "drag", "gidaspow", "drag law of the particles");
+  forces_ = std::make_unique<FluidForces>(mesh, mass_, options, options_.viscous_stress);
+  thermophoresis_ = Thermophoresis::create(mesh, mass_, fluid, options);
+  if (particles.has_heat() && !fluid.temperature().empty())
+    heat_ = std::make_unique<HeatExchange>(mesh, mass_, particles, fluid, options);
   if (mesh.dimension == 2) {
     if (!options_.depth)
       throw UserError("coupling_depth: give the thickness in m that the 2D mesh stands for; particles have a volume");
@@ -123,7 +127,8 @@ void Coupling::start() {
   std::copy(alpha.begin(), alpha.end(), fluid_.load().void_fraction.begin());
 }
 
-void Coupling::restored(double largest_diameter) {
+void Coupling::restored(double largest_diameter, double last_step) {
+  last_step_ = last_step;
   if (largest_diameter > diameter_) {
     diameter_ = largest_diameter;
     filter_.reset();
@@ -143,7 +148,8 @@ void Coupling::before_particles(double dt) {
   const std::span<double> u(at_particles_.data(), 3 * static_cast<std::size_t>(count)),
       alpha(u.data() + u.size(), count);
   kernel_.sample(nodal_, u, 3);
-  kernel_.sample(void_fraction_.previous(), alpha, 1);
+  const auto given = fluid_.given_void_fraction();
+  kernel_.sample(given.empty() ? void_fraction_.previous() : given, alpha, 1);
 
   const double density = fluid_.density(), viscosity = fluid_.viscosity();
   // Model B leaves the whole pressure gradient to the fluid; its drag is then that of model A over alpha (Zhou et al.
@@ -168,7 +174,7 @@ void Coupling::before_particles(double dt) {
           for (int d = 0; d < 3; ++d) {
             action.velocity[d] = w[d];
             action.force[d] = action.owed[d] / dt - displaced * gravity_[d];
-            action.impulse[d] = 0;
+            action.impulse[d] = action.field_impulse[d] = 0;
             action.start_velocity[d] = v[d];
             ledger_.delivered[d] += action.owed[d];
             ledger_.buoyancy[d] -= displaced * gravity_[d] * dt;
@@ -176,6 +182,10 @@ void Coupling::before_particles(double dt) {
         }
       },
       drag_);
+  for (int p = 0; p < count; ++p) vec3(particles_.fluid_action(p).reaction).setZero();
+  if (forces_->any()) forces_->act(fluid_, *filter_, kernel_, particles_, last_step_);
+  if (thermophoresis_) thermophoresis_->act(fluid_, *filter_, kernel_, particles_);
+  if (heat_) heat_->before_particles(*filter_, kernel_, alpha);
 }
 
 void Coupling::before_fluid(double dt) {
@@ -191,21 +201,23 @@ void Coupling::before_fluid(double dt) {
   nodal_.resize(load_components * static_cast<std::size_t>(mesh_.nodes));
   ledger_.particle_volume = 0;
   ledger_.drag_on_particles.setZero();
+  ledger_.forces_on_particles.setZero();
   ledger_.drag_on_fluid.setZero();
   exchanged_ = 0;
   for (int p = 0; p < count; ++p) {
     FluidAction& action = particles_.fluid_action(p);
     const double mass = particles_.mass(p), volume = particles_.volume(p);
-    const Vec3 force = vec3(action.force) + mass * gravity_;
-    const double h = held(vec3(action.start_velocity), particles_.velocity(p), vec3(action.velocity), force, mass,
-                          action.exchange, dt, action.held);
-    responses_[p] = response(mass, action.exchange, h, dt);
+    const Vec3 force = vec3(action.force) + mass * gravity_ + vec3(action.field_impulse) / dt;
+    const double h = held(vec3(action.start_velocity), particles_.velocity(p), vec3(action.velocity), force,
+                          mass + action.added_mass, action.exchange, dt, action.held);
+    responses_[p] = response(mass, action.exchange, h, dt, action.added_mass);
     double* q = &at_particles_[load_components * static_cast<std::size_t>(p)];
     q[0] = volume;
     q[1] = responses_[p].mass;
     for (int d = 0; d < 3; ++d) {
-      q[2 + d] = action.impulse[d];
-      ledger_.drag_on_particles[d] += q[2 + d];
+      q[2 + d] = action.impulse[d] + dt * action.reaction[d];
+      ledger_.drag_on_particles[d] += action.impulse[d];
+      ledger_.forces_on_particles[d] += dt * action.reaction[d];
     }
     ledger_.particle_volume += volume;
     exchanged_ += vec3(&q[2]).norm();
@@ -214,9 +226,14 @@ void Coupling::before_fluid(double dt) {
     const Departed& gone = departed[p - count];
     place_clamped(p, gone.cell, gone.position);
     double* q = &at_particles_[load_components * static_cast<std::size_t>(p)];
-    for (int d = 0; d < 3; ++d) ledger_.drag_on_particles[d] += q[2 + d] = gone.action.impulse[d];
+    for (int d = 0; d < 3; ++d) {
+      q[2 + d] = gone.action.impulse[d] + gone.acted * gone.action.reaction[d];
+      ledger_.drag_on_particles[d] += gone.action.impulse[d];
+      ledger_.forces_on_particles[d] += gone.acted * gone.action.reaction[d];
+    }
     exchanged_ += vec3(&q[2]).norm();
   }
+  if (heat_) heat_->before_fluid(dt, depth_, *filter_, kernel_);
   kernel_.deposit(at_particles_, nodal_, load_components);
   for (int i = 0; i < mesh_.nodes; ++i) {
     for (int c = 0; c < load_components; ++c) nodal_[load_components * i + c] /= mass_[i] * depth_;
@@ -277,21 +294,25 @@ void Coupling::after_fluid(double dt) {
     ledger_.in_transit += vec3(action.owed);
     exchanged_ += owed.norm() + pressure.norm();
   }
+  if (heat_) heat_->after_fluid(dt, depth_, *filter_, kernel_);
   void_fraction_.commit(load.void_fraction);
+  last_step_ = dt;
 
   GlobalSums sums;
-  for (Vec3* v : {&ledger_.drag_on_particles, &ledger_.drag_on_fluid, &ledger_.response_on_particles,
-                  &ledger_.response_on_fluid, &ledger_.pressure_on_particles, &ledger_.pressure_on_fluid,
-                  &ledger_.buoyancy, &ledger_.given_at_once, &ledger_.delivered, &ledger_.in_transit}) {
+  for (Vec3* v : {&ledger_.drag_on_particles, &ledger_.forces_on_particles, &ledger_.drag_on_fluid,
+                  &ledger_.response_on_particles, &ledger_.response_on_fluid, &ledger_.pressure_on_particles,
+                  &ledger_.pressure_on_fluid, &ledger_.buoyancy, &ledger_.given_at_once, &ledger_.delivered,
+                  &ledger_.in_transit}) {
     sums.add(*v);
   }
   sums.add(ledger_.particle_volume);
   sums.add(ledger_.deposited_volume);
   sums.add(exchanged_);
   sums.sum();
-  const double imbalance = std::max({(ledger_.drag_on_particles + ledger_.drag_on_fluid).norm(),
-                                     (ledger_.response_on_particles + ledger_.response_on_fluid).norm(),
-                                     (ledger_.pressure_on_particles + ledger_.pressure_on_fluid).norm()});
+  const double imbalance =
+      std::max({(ledger_.drag_on_particles + ledger_.forces_on_particles + ledger_.drag_on_fluid).norm(),
+                (ledger_.response_on_particles + ledger_.response_on_fluid).norm(),
+                (ledger_.pressure_on_particles + ledger_.pressure_on_fluid).norm()});
   ledger_.residual = exchanged_ > 0 ? imbalance / exchanged_ : 0;
   if (ledger_.particle_volume > 0) {
     ledger_.residual = std::max(ledger_.residual,
@@ -309,8 +330,9 @@ std::string Coupling::description() const {
   const std::string width = options_.filter_length
                                 ? fmt::format("length {:.4g} m", *options_.filter_length)
                                 : fmt::format("two diameters ({:.4g} m), at least two cells", 2 * diameter_);
-  return fmt::format("drag {}, model {}, filter {} in {} passes", law, fluid_.model_a() ? "A" : "B", width,
-                     filter_->passes());
+  return fmt::format("drag {}{}{}{}, model {}, filter {} in {} passes", law, forces_->description(),
+                     thermophoresis_ ? ", thermophoresis " + thermophoresis_->name() : "",
+                     heat_ ? ", heat by " + heat_->name() : "", fluid_.model_a() ? "A" : "B", width, filter_->passes());
 }
 
 }  // namespace silt

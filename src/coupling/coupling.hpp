@@ -11,7 +11,10 @@
 #include "coupling/drag/drag_models.hpp"
 #include "coupling/exchange.hpp"
 #include "coupling/filter.hpp"
+#include "coupling/fluid_forces.hpp"
+#include "coupling/heat/heat_exchange.hpp"
 #include "coupling/kernel.hpp"
+#include "coupling/thermophoresis.hpp"
 #include "coupling/void_fraction.hpp"
 #include "fluid/fluid.hpp"
 #include "particles/particles.hpp"
@@ -23,6 +26,7 @@ struct CouplingOptions {
   std::optional<double> filter_length;
   double void_fraction_minimum = 0.2;
   std::optional<double> depth;
+  bool viscous_stress = false;
   void options(OptionGroup& option) {
     option("filter_length", filter_length, "m",
            "length l by which what a particle does to the fluid is spread: a Gaussian of variance 2 l^2 in each "
@@ -35,6 +39,7 @@ struct CouplingOptions {
            Range{0, 1, true, true});
     option("depth", depth, "m",
            "thickness that a 2D mesh stands for; the particles' volume and forces are spread over it", positive);
+    option("viscous_stress", viscous_stress, "particles feel V_p div tau of the undisturbed flow as well");
   }
 };
 
@@ -73,10 +78,14 @@ class Coupling {
   /// the automatic filter was made. restored() follows when they were overwritten. Collective.
   std::vector<Fluid::StateArray> state() { return {{"void_fraction", &void_fraction_.state(), 1}}; }
   double largest_diameter() const { return diameter_; }
-  void restored(double largest_diameter);
+  /// s, the step that led to the present flow.
+  double last_step() const { return last_step_; }
+  void restored(double largest_diameter, double last_step);
 
   /// The last step's exchange, complete after after_fluid().
   const ExchangeLedger& ledger() const { return ledger_; }
+  /// The same of heat; null when fluid or particles have no temperature.
+  const HeatLedger* heat_ledger() const { return heat_ ? &heat_->ledger() : nullptr; }
   /// One line for the header of the run: filter, drag law.
   std::string description() const;
   const Filter& filter() const { return *filter_; }
@@ -101,6 +110,10 @@ class Coupling {
   VoidFraction void_fraction_;
   std::vector<double> mass_;  ///< [nodes] m3 (m2 in 2D)
   std::unique_ptr<Filter> filter_;
+  std::unique_ptr<FluidForces> forces_;
+  std::unique_ptr<Thermophoresis> thermophoresis_;  ///< null: none
+  std::unique_ptr<HeatExchange> heat_;              ///< null: fluid or particles have no temperature
+  double last_step_ = 0;                            ///< s, the step that led to the present flow; 0: none
   ExchangeLedger ledger_;
   double exchanged_ = 0;  ///< N s, sum of the magnitudes exchanged in this step: the scale of the residual
   std::vector<double> nodal_, at_particles_;

@@ -18,8 +18,9 @@ struct Response {
   double held = 0;  ///< 0 free ... 1 held
 };
 
-inline Response response(double mass, double exchange, double held, double dt) {
-  const double free = -mass * std::expm1(-exchange * dt / mass);
+/// `added`: kg, mass of fluid accelerated with the particle.
+inline Response response(double mass, double exchange, double held, double dt, double added = 0) {
+  const double free = -mass * std::expm1(-exchange * dt / (mass + added));
   return {free, (1 - held) * free + held * exchange * dt, held};
 }
 
@@ -42,7 +43,8 @@ inline double held(const Vec3& start, const Vec3& now, const Vec3& fluid, const 
 /// N s, all ranks.
 struct ExchangeLedger {
   Vec3 drag_on_particles = Vec3::Zero();      ///< sum_p I_p, drag impulse the particles received in their substeps
-  Vec3 drag_on_fluid = Vec3::Zero();          ///< the load vector's total times dt: -sum_p I_p
+  Vec3 forces_on_particles = Vec3::Zero();    ///< impulse of lift, virtual mass and viscous stress at the step's start
+  Vec3 drag_on_fluid = Vec3::Zero();          ///< the load vector's total times dt: the opposite of the two above
   Vec3 response_on_particles = Vec3::Zero();  ///< sum_p J_p, owed for the change of the fluid velocity
   Vec3 response_on_fluid = Vec3::Zero();      ///< -dt sum_i response_i (u^{n+1} - u^n)_i
   Vec3 pressure_on_particles = Vec3::Zero();  ///< -dt sum_p V_p grad p

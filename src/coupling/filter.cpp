@@ -144,8 +144,11 @@ void Filter::apply(double* values, int components) const {
       case 6:
         differences<6>(row_start_, column_, entry_, values, change_.data());
         break;
+      case 9:
+        differences<9>(row_start_, column_, entry_, values, change_.data());
+        break;
       default:
-        throw std::logic_error("Filter::apply takes 1 to 6 components");
+        throw std::logic_error("Filter::apply takes 1 to 6 components, or 9");
     }
     mesh_.sum_shared(change_.data(), components);
     for (std::size_t k = 0; k < size; ++k) values[k] += factor * change_[k];

@@ -100,8 +100,11 @@ void Kernel::sample(std::span<const double> nodal, std::span<double> values, int
     case 6:
       gather<6>(mesh_, cell_, weight_, f, v);
       break;
+    case 9:
+      gather<9>(mesh_, cell_, weight_, f, v);
+      break;
     default:
-      throw std::logic_error("Kernel::sample takes 1 to 6 components");
+      throw std::logic_error("Kernel::sample takes 1 to 6 components, or 9");
   }
 }
 

@@ -6,6 +6,7 @@
 #include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/monolithic.hpp"
+#include "fluid/prescribed.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
 
 namespace silt {
@@ -31,6 +32,12 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
   if (fluid.scheme != "monolithic" && options.find("fluid_element").value_or("equal_order") != "equal_order")
     throw UserError(fmt::format("option -fluid_element ({}): '{}' needs -fluid_scheme monolithic",
                                 options.origin("fluid_element"), *options.find("fluid_element")));
+  if (fluid.type == "prescribed") {
+    auto given = std::make_unique<Prescribed>(mesh, options, fluid);
+    given->description_ =
+        fmt::format("prescribed, {} kg/m3, {} Pa s, model {}", fluid.density, fluid.viscosity, fluid.model);
+    return given;
+  }
   auto made = fluid.scheme == "pressure_correction" ? make_pressure_correction(mesh, options, fluid, gravity)
                                                     : make_monolithic(mesh, options, fluid, gravity);
   if (fluid.energy) {

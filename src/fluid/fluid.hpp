@@ -100,6 +100,8 @@ class Fluid {
   virtual std::vector<Scalar> scalars() const {
     return temperature().empty() ? std::vector<Scalar>{} : std::vector<Scalar>{{"temperature", temperature()}};
   }
+  /// [nodes] the void fraction that particles see instead of their own; empty unless it is prescribed.
+  virtual std::span<const double> given_void_fraction() const { return {}; }
   /// Flow and force per boundary, in the order of Mesh::boundaries. Collective.
   virtual std::vector<BoundaryFlow> boundary_flow() const = 0;
 

@@ -21,7 +21,8 @@ struct FluidOptions {
   std::string body_force = "0, 0, 0";
 
   void options(OptionGroup& option) {
-    option("type", type, {"incompressible", "none"}, "the carrier fluid; none: particles only");
+    option("type", type, {"incompressible", "prescribed", "none"},
+           "the carrier fluid; prescribed: given by formulas, not solved; none: particles only");
     option("scheme", scheme, {"pressure_correction", "monolithic"},
            "pressure_correction: semi-implicit, velocity and pressure one after the other; monolithic: one Newton "
            "iteration over both");

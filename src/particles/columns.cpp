@@ -31,6 +31,12 @@ int Columns::find(const std::string& name) const {
   return -1;
 }
 
+int Columns::offset(int column) const {
+  int at = 0;
+  for (int c = 0; c < column; ++c) at += request(c).width;
+  return at;
+}
+
 void Columns::reserve(int particles) {
   room_ = std::max(room_, particles);
   for (Column& column : columns_)

@@ -39,6 +39,8 @@ class Columns {
   int find(const std::string& name) const;
   int count() const { return static_cast<int>(columns_.size()); }
   const ColumnRequest& request(int column) const { return columns_[column].request; }
+  /// Where a column begins in the row of gather().
+  int offset(int column) const;
   /// Doubles a particle, over all columns.
   int width() const { return width_; }
 

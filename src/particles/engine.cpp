@@ -42,7 +42,10 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
       gravity_(gravity),
       plane_(options_.plane || on_mesh.dimension == 2),
       memory_(laws_.history_components()),
-      wall_memory_(4 + laws_.history_components()) {
+      wall_memory_(4 + laws_.history_components()),
+      brownian_(read<BrownianOptions>(options, "brownian")),
+      fields_(make_force_fields(options, on_mesh, store.columns, options_.instructions)),
+      heat_(ParticleHeat::create(options, materials, store.columns)) {
   contacts = ContactLists(laws_.history_components());
   wall_contacts = WallContacts(laws_.history_components());
   if (plane_) gravity_[2] = 0;
@@ -85,7 +88,7 @@ void Engine::add(const std::vector<Seed>& seeds) {
   store.ghosts = 0;
   store.id.resize(store.owned);
   double fastest = 0;
-  SmallestRadii smallest{std::vector<double>(materials.count(), infinity)};
+  smallest_.radius.assign(materials.count(), infinity);
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     const Seed& seed = seeds[k];
     fastest = std::max(fastest, seed.velocity.norm());
@@ -120,13 +123,26 @@ void Engine::add(const std::vector<Seed>& seeds) {
   total += static_cast<long long>(seeds.size());
 
   for (int p = 0; p < store.owned; ++p) {
-    double& radius = smallest.radius[static_cast<int>(store.motion[p].material)];
+    double& radius = smallest_.radius[static_cast<int>(store.motion[p].material)];
     radius = std::min(radius, store.motion[p].radius);
     fastest = std::max(fastest, vec3(store.motion[p].velocity).norm());
   }
-  MPI_Allreduce(MPI_IN_PLACE, smallest.radius.data(), materials.count(), MPI_DOUBLE, MPI_MIN, communicator_);
+  MPI_Allreduce(MPI_IN_PLACE, smallest_.radius.data(), materials.count(), MPI_DOUBLE, MPI_MIN, communicator_);
   const double fall = std::sqrt(2 * gravity_.norm() * (mesh.upper - mesh.lower).norm());
-  limit = limit_step(options_, materials, laws_, smallest, options_.speed.value_or(std::max(mpi_max(fastest), fall)));
+  if (brownian_.active())
+    for (int m = 0; m < materials.count(); ++m)
+      if (smallest_.radius[m] < infinity)
+        fastest = std::max(fastest, brownian_.speed(*materials[m].density * 4.0 / 3.0 * std::numbers::pi *
+                                                    std::pow(smallest_.radius[m], 3)));
+  std::vector<StepBound> bounds;
+  for (const auto& field : fields_)
+    for (const StepBound& bound : field->bounds(materials, smallest_)) bounds.push_back(bound);
+  for (int m = 0; m < materials.count() && heat_; ++m)
+    if (const double time = smallest_.radius[m] < infinity ? heat_->conduction_time(smallest_.radius[m], m) : infinity;
+        time < infinity)
+      bounds.push_back({time, fmt::format("heat conduction of {}", materials[m].name)});
+  limit = limit_step(options_, materials, laws_, smallest_, options_.speed.value_or(std::max(mpi_max(fastest), fall)),
+                     bounds);
 
   skin_ = options_.skin > 0 ? options_.skin : 0.2 * largest_radius_;
   const double reach = 2 * largest_radius_ + skin_;
@@ -204,6 +220,18 @@ void Engine::sum_up() {
   if (plane_) fluid_force_[2] = 0;
 }
 
+void Engine::act_fields(double time, double dt) {
+  FieldStep step{store, periods_, materials, communicator_, time, dt};
+  std::vector<Vec3> contacts_only(store.owned);
+  for (int p = 0; p < store.owned; ++p) contacts_only[p] = vec3(store.present[p].force);
+  for (const auto& field : fields_) field->act(step);
+  for (int p = 0; p < store.owned; ++p)
+    vec3(store.action[p].field_impulse) += dt * (vec3(store.present[p].force) - contacts_only[p]);
+  field_total_ = step.external;
+  if (plane_) field_total_[2] = 0;
+  field_size_ = step.size;
+}
+
 void Engine::evaluate(double time, double dt) {
   const LawSetup& setup = laws_.setup();
   CandidateSweep search;
@@ -253,6 +281,7 @@ void Engine::evaluate(double time, double dt) {
                              describe(motion, store.id[point.particle]), walls_.name(point.boundary),
                              1 - point.distance / motion.radius, options_.overlap_limit);
   }
+  if (!fields_.empty()) act_fields(time, dt);
 }
 
 Integration Engine::pass(double h) {
@@ -261,6 +290,7 @@ Integration Engine::pass(double h) {
   step.present = store.present.data();
   step.previous = store.previous.data();
   step.drag = fluid_ ? store.drag.data() : nullptr;
+  step.turning = turning_ ? store.turning.data() : nullptr;
   step.origin = reinterpret_cast<const double(*)[4]>(store.origin.data());
   step.count = store.owned;
   step.dt = h;
@@ -296,7 +326,7 @@ ParticleStep Engine::advance(double time, double dt) {
   wall_turning = wall_impulse;
   wall_time = dt;
   if (total == 0 || dt <= 0) return result;
-  if (options_.fixed && !settling_) return hold(dt);
+  if (options_.fixed && !settling_) return hold(time, dt);
   if (!started_)
     start(time);
   else if (detached_) {
@@ -305,6 +335,7 @@ ParticleStep Engine::advance(double time, double dt) {
   }
   const int substeps = std::max(1, static_cast<int>(std::ceil(dt / limit.step * (1 - 1e-12))));
   const double h = dt / substeps;
+  acted_ = 0;
   prepare_fluid(h);
   sum_up();
   const bool alone = mpi_size() == 1;
@@ -312,11 +343,13 @@ ParticleStep Engine::advance(double time, double dt) {
   for (int s = 0; s < substeps; ++s) {
     impulses.gravity += h * mass_ * gravity_;
     impulses.fluid_force += h * fluid_force_;
+    acted_ += h;
 
     Integration step = pass(h);
     step.correct = s > 0;
     step.drift = true;
     kernels_.integrate(step);
+    if (brownian_.active() && fluid_) step.largest_square = brownian_.act(store, step, time + (s + 1) * h);
     store.present.swap(store.previous);
     if (!std::isfinite(step.check)) trouble_ = find_bad();
     move_walls(time + s * h, h);
@@ -329,11 +362,14 @@ ParticleStep Engine::advance(double time, double dt) {
       rebuild(store.previous, true, h);
     else
       halo_.forward(store);
-    const Vec3 before = wall_total_;
+    const Vec3 before = wall_total_, drawn = field_total_;
     add_wall_impulses(0.5 * h);
     evaluate(time + (s + 1) * h, h);
     add_wall_impulses(0.5 * h);
     impulses.walls += 0.5 * h * (before + wall_total_);
+    impulses.fields += 0.5 * h * (drawn + field_total_);
+    impulses.exchanged += h * field_size_;
+    if (heat_) heat_->advance(store, contacts, periods_, time + (s + 1) * h, h);
   }
   Integration step = pass(h);
   step.correct = true;

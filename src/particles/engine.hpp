@@ -3,9 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "particles/brownian.hpp"
 #include "particles/contact_laws.hpp"
 #include "particles/contact_lists.hpp"
+#include "particles/force_field.hpp"
 #include "particles/halo.hpp"
+#include "particles/heat/particle_heat.hpp"
 #include "particles/insertion/streams.hpp"
 #include "particles/materials.hpp"
 #include "particles/migration.hpp"
@@ -46,7 +49,7 @@ struct Particles::Snapshot {
   Impulses impulses;
   long long total, removed;
   std::int64_t next_id;
-  Vec3 wall_total;
+  Vec3 wall_total, field_total;
   std::vector<Vec3> wall_force, wall_torque;
   std::vector<WallMotion::State> wall_states;
   std::vector<StreamState> streams;
@@ -70,6 +73,9 @@ class Engine {
   void load(const CheckpointReader& from, bool elsewhere);
   void load_columns(const CheckpointReader& from);
 
+  /// J/K, null without temperatures.
+  const ParticleHeat* heat() const { return heat_.get(); }
+
   /// Momentum etc. that this rank's particles received since the last take_impulses().
   Particles::Impulses impulses;
   Store store;
@@ -88,8 +94,9 @@ class Engine {
 
  private:
   /// advance() of particles that are held.
-  ParticleStep hold(double dt);
+  ParticleStep hold(double time, double dt);
   void prepare_fluid(double h);
+  void prepare_turning(double h);
   void collect_fluid();
   void start(double time);
   void rebuild(Aligned<Load>& carried, bool within_step, double h);
@@ -98,6 +105,10 @@ class Engine {
   void take_out(double time);
   void move_walls(double time, double h);
   void add_wall_impulses(double h);
+  /// Adds the force fields' part to the present loads.
+  void act_fields(double time, double dt);
+  /// Temperatures of held particles, in steps that conduction allows.
+  void heat_held(double time, double dt);
   /// Takes the contacts' memories out of the lists, whose indices are about to change.
   void detach();
   /// Sums that change only when particles come or go.
@@ -125,10 +136,13 @@ class Engine {
   bool plane_;
   Periods periods_;
   double skin_ = 0, largest_radius_ = 0;
+  SmallestRadii smallest_;
   std::int64_t next_id_ = 0;
   bool settling_ = false;
   bool started_ = false;  ///< lists and present forces are valid
   bool fluid_ = false;    ///< store.drag is in use in this advance
+  bool turning_ = false;  ///< store.turning is in use in this advance
+  double acted_ = 0;      ///< s, how long the fluid's forces have acted in this advance
   bool detached_ = true;  ///< the memories are outside the lists
   ContactMemory memory_;
   ParticleRows wall_memory_;
@@ -138,6 +152,12 @@ class Engine {
   std::string trouble_;  ///< what this rank found in the last evaluation
   std::vector<double> wall_force_sum_, wall_torque_sum_;
   Vec3 wall_total_ = Vec3::Zero();
+  Brownian brownian_;
+  std::vector<std::unique_ptr<ForceField>> fields_;
+  std::unique_ptr<ParticleHeat> heat_;  ///< null: particles have no temperature
+  Vec3 field_total_ =
+      Vec3::Zero();        ///< N, of the last evaluation: what fields from outside do to this rank's particles
+  double field_size_ = 0;  ///< N, of what particles do to each other by fields
 };
 
 }  // namespace silt

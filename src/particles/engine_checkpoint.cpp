@@ -75,6 +75,7 @@ void Engine::save(CheckpointWriter& to) {
   to.add("wall_force", 3, as_numbers(wall_force.data(), static_cast<int>(wall_force.size())));
   to.add("wall_torque", 3, as_numbers(wall_torque.data(), static_cast<int>(wall_torque.size())));
   to.add("wall_total", 3, as_numbers(&wall_total_, 1));
+  to.add("field_total", 3, as_numbers(&field_total_, 1));
   std::vector<double> states;
   if (mpi_rank() == 0)
     for (const auto& state : walls_.states())
@@ -138,9 +139,10 @@ void Engine::load(const CheckpointReader& from, bool elsewhere) {
   load_rows(from, "wall_contacts", first, n, wall_memory_);
 
   const auto force = from.numbers("wall_force"), torque = from.numbers("wall_torque"),
-             total_force = from.numbers("wall_total");
+             total_force = from.numbers("wall_total"), total_field = from.numbers("field_total");
   const int count = walls_.count();
   wall_total_.setZero();
+  field_total_.setZero();
   for (int w = 0; w < count; ++w) wall_force[w].setZero(), wall_torque[w].setZero();
   for (int r = 0; r < static_cast<int>(each.size()); ++r) {
     if (same_ranks ? r != rank : rank != 0) continue;
@@ -149,6 +151,7 @@ void Engine::load(const CheckpointReader& from, bool elsewhere) {
       wall_torque[w] += vec3(&torque[3 * (static_cast<std::size_t>(r) * count + w)]);
     }
     wall_total_ += vec3(&total_force[3 * static_cast<std::size_t>(r)]);
+    field_total_ += vec3(&total_field[3 * static_cast<std::size_t>(r)]);
   }
   const auto numbers = from.numbers("wall_states");
   std::vector<WallMotion::State> states;

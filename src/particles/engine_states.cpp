@@ -27,7 +27,18 @@ void Engine::settle(const SettleOptions& options) {
   impulses = {};
 }
 
-ParticleStep Engine::hold(double dt) {
+void Engine::heat_held(double time, double dt) {
+  double longest = dt;
+  for (int m = 0; m < materials.count(); ++m)
+    longest = std::min(longest, options_.step_fraction * heat_->conduction_time(smallest_.radius[m], m));
+  const int steps = static_cast<int>(std::ceil(dt / longest * (1 - 1e-12)));
+  for (int s = 0; s < steps; ++s) {
+    halo_.forward(store);
+    heat_->advance(store, contacts, periods_, time + (s + 1) * dt / steps, dt / steps);
+  }
+}
+
+ParticleStep Engine::hold(double time, double dt) {
   if (!started_) start(0);  // they may not overlap more than others
   if (detached_) rebuild(store.present, false, 0);
   Vec3 support = Vec3::Zero();
@@ -49,6 +60,7 @@ ParticleStep Engine::hold(double dt) {
     }
   }
   impulses.walls -= support;
+  if (heat_) heat_held(time, dt);
   ParticleStep result;
   result.substeps = 1;
   result.removed = removed;
@@ -64,12 +76,27 @@ std::shared_ptr<const Particles::Snapshot> Engine::snapshot() const {
     wall_contacts.gather(store.owned, wall_memory);
   }
   const int n = store.owned;
-  return std::make_shared<const Particles::Snapshot>(Particles::Snapshot{
-      n, std::vector<Motion>(store.motion.data(), store.motion.data() + n),
-      std::vector<Load>(store.present.data(), store.present.data() + n),
-      std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n), store.cell, store.action,
-      store.columns.save(n), std::move(memory), std::move(wall_memory), impulses, total, removed, next_id_, wall_total_,
-      wall_force, wall_torque, walls_.states(), streams_.states(), started_});
+  return std::make_shared<const Particles::Snapshot>(
+      Particles::Snapshot{n,
+                          std::vector<Motion>(store.motion.data(), store.motion.data() + n),
+                          std::vector<Load>(store.present.data(), store.present.data() + n),
+                          std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n),
+                          store.cell,
+                          store.action,
+                          store.columns.save(n),
+                          std::move(memory),
+                          std::move(wall_memory),
+                          impulses,
+                          total,
+                          removed,
+                          next_id_,
+                          wall_total_,
+                          field_total_,
+                          wall_force,
+                          wall_torque,
+                          walls_.states(),
+                          streams_.states(),
+                          started_});
 }
 
 void Engine::restore(const Particles::Snapshot& saved) {
@@ -96,9 +123,10 @@ void Engine::restore(const Particles::Snapshot& saved) {
   walls_.set_states(saved.wall_states);
   streams_.set_states(saved.streams);
   taken_out_.clear();
+  field_total_ = saved.field_total;
   started_ = saved.started;
   departed.clear();
-  fluid_ = false;
+  fluid_ = turning_ = false;
 }
 
 }  // namespace silt

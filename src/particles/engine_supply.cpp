@@ -68,14 +68,18 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
     leaving.boundary = one.boundary;
     leaving.action = one.action;
     leaving.columns = one.columns;
+    leaving.acted = acted_;
     if (within_step) {
       // It ends the step without contacts at its new place: the corrector for a force that has gone to zero.
-      const double z = one.action.exchange * one.motion.inverse_mass * h;
+      const double share = 1 / (1 + one.action.added_mass * one.motion.inverse_mass);
+      const double z = one.action.exchange * one.motion.inverse_mass * share * h;
       const double phi = z > 0 ? -std::expm1(-z) * h / z : h;
-      const double corrector = z > 1e-2 ? (1 - phi / h) * h / z : h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z / 120)));
+      const double corrector = brownian_.overdamped() && z > 0 ? h / z
+                               : z > 1e-2                      ? (1 - phi / h) * h / z
+                                                               : h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z / 120)));
       for (int d = 0; d < (plane_ ? 2 : 3); ++d) {
-        leaving.velocity[d] -= corrector * one.motion.inverse_mass * one.carried.force[d];
-        const double drag = -(corrector - 0.5 * h) * one.carried.force[d];
+        leaving.velocity[d] -= corrector * share * one.motion.inverse_mass * one.carried.force[d];
+        const double drag = -(corrector * share - 0.5 * h) * one.carried.force[d];
         leaving.action.impulse[d] += drag;
         impulses.drag[d] += drag;
       }

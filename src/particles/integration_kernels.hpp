@@ -9,7 +9,7 @@ namespace SILT_ISA {
 SILT_INLINE Quad quad(const double* p) { return *reinterpret_cast<const Quad*>(p); }
 SILT_INLINE Quad every(double a) { return Quad{a, a, a, a}; }
 
-template <bool correct, bool drift, bool fluid>
+template <bool correct, bool drift, bool fluid, bool turning>
 void integrate_all(Integration& step) {
   const double h = step.dt;
   const Quad move = quad(step.move), turn = quad(step.turn), gravity = quad(step.gravity);
@@ -20,32 +20,44 @@ void integrate_all(Integration& step) {
     const double inverse_mass = motion.inverse_mass;
     const double inverse_inertia = 2.5 * inverse_mass / (motion.radius * motion.radius);
     const Quad force = quad(step.present[p].force), torque = quad(step.present[p].torque);
-    double first = h, second = 0.5 * h * h, corrector = 0.5 * h;
+    double first = h, second = 0.5 * h * h, corrector = 0.5 * h, share = 1;
+    double turn_first = h, turn_corrector = 0.5 * h;
     Quad impulse{};
     if constexpr (fluid) {
       first = step.drag[p].first;
       second = step.drag[p].second;
       corrector = step.drag[p].corrector;
+      share = step.drag[p].share;
       impulse = quad(step.drag[p].impulse);
+    }
+    if constexpr (turning) {
+      turn_first = step.turning[p].first;
+      turn_corrector = step.turning[p].corrector;
     }
     if constexpr (correct) {
       const Quad change = move * (force - quad(step.previous[p].force));
-      velocity += every(corrector * inverse_mass) * change;
-      spin += every(0.5 * h * inverse_inertia) * turn * (torque - quad(step.previous[p].torque));
-      if constexpr (fluid) impulse += every(corrector - 0.5 * h) * change;
+      if constexpr (fluid) {
+        velocity += every(corrector * share * inverse_mass) * change;
+        impulse += every(corrector * share - 0.5 * h) * change;
+      } else {
+        velocity += every(corrector * inverse_mass) * change;
+      }
+      spin += every(turn_corrector * inverse_inertia) * turn * (torque - quad(step.previous[p].torque));
     }
     if constexpr (drift) {
       Quad steady = every(inverse_mass) * force + gravity;
       Quad acceleration = steady;
       if constexpr (fluid) {
         steady += quad(step.drag[p].acceleration);
-        acceleration = steady + every(step.drag[p].rate) * (quad(step.drag[p].velocity) - velocity);
+        acceleration = every(share) * steady + every(step.drag[p].rate) * (quad(step.drag[p].velocity) - velocity);
         impulse += every(1 / inverse_mass) * move * (every(first) * acceleration - every(h) * steady);
       }
       acceleration *= move;
       const Quad position = quad(motion.position) + (every(h) * move) * velocity + every(second) * acceleration;
       velocity += every(first) * acceleration;
-      spin += every(h * inverse_inertia) * turn * torque;
+      Quad turned = every(inverse_inertia) * torque;
+      if constexpr (turning) turned += every(step.turning[p].rate) * (quad(step.turning[p].spin) - spin);
+      spin += every(turn_first) * turn * turned;
       *reinterpret_cast<Quad*>(motion.position) = position;
       const Quad moved = position - quad(step.origin[p]);
       const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
@@ -62,16 +74,23 @@ void integrate_all(Integration& step) {
   step.check = check;
 }
 
-template <bool fluid>
+template <bool fluid, bool turning>
 SILT_INLINE void choose_pass(Integration& step) {
   if (step.correct && step.drift)
-    integrate_all<true, true, fluid>(step);
+    integrate_all<true, true, fluid, turning>(step);
   else if (step.correct)
-    integrate_all<true, false, fluid>(step);
+    integrate_all<true, false, fluid, turning>(step);
   else
-    integrate_all<false, true, fluid>(step);
+    integrate_all<false, true, fluid, turning>(step);
 }
-void integrate(Integration& step) { step.drag ? choose_pass<true>(step) : choose_pass<false>(step); }
+void integrate(Integration& step) {
+  if (step.turning)
+    choose_pass<true, true>(step);
+  else if (step.drag)
+    choose_pass<true, false>(step);
+  else
+    choose_pass<false, false>(step);
+}
 
 }  // namespace SILT_ISA
 }  // namespace silt

@@ -14,6 +14,7 @@ struct Material {
   double young_modulus = 1e7, poisson_ratio = 0.3;
   double restitution = 0.9, friction = 0.3, rolling_friction = 0;
   std::optional<double> yield_pressure;
+  std::optional<double> heat_capacity, conductivity;
   void options(OptionGroup& option) {
     option("density", density, "kg/m3", "density of the material; has no default", positive);
     option("young_modulus", young_modulus, "Pa", "Young's modulus E", positive);
@@ -23,6 +24,9 @@ struct Material {
     option("rolling_friction", rolling_friction, "-", "rolling friction coefficient mu_r", non_negative);
     option("yield_pressure", yield_pressure, "Pa",
            "contact pressure at yield p_y (normal law thornton); default: elastic", positive);
+    option("heat_capacity", heat_capacity, "J/(kg K)", "specific heat capacity, for particles with a temperature",
+           positive);
+    option("conductivity", conductivity, "W/(m K)", "heat conductivity, for heat through contacts", positive);
   }
 };
 

@@ -43,6 +43,8 @@ double Particles::volume(int i) const {
 }
 Columns& Particles::columns() { return impl_->store.columns; }
 const Columns& Particles::columns() const { return impl_->store.columns; }
+bool Particles::has_heat() const { return impl_->heat() != nullptr; }
+double Particles::heat_capacity(int i) const { return impl_->heat()->capacity(impl_->store.motion[i]); }
 int Particles::material(int i) const { return static_cast<int>(impl_->store.motion[i].material); }
 int Particles::cell(int i) const { return impl_->store.cell[i]; }
 FluidAction& Particles::fluid_action(int i) { return impl_->store.action[i]; }
@@ -97,17 +99,18 @@ double Particles::total_mass() const {
 
 Particles::Impulses Particles::take_impulses() {
   Impulses& mine = impl_->impulses;
-  double values[7][3];
-  const Vec3* parts[7] = {&mine.gravity, &mine.walls, &mine.drag,   &mine.fluid_force,
-                          &mine.kicks,   &mine.added, &mine.removed};
-  for (int k = 0; k < 7; ++k)
-    for (int d = 0; d < 3; ++d) values[k][d] = (*parts[k])[d];
-  double mass[2] = {mine.added_mass, mine.removed_mass};
-  MPI_Allreduce(MPI_IN_PLACE, values, 21, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
-  MPI_Allreduce(MPI_IN_PLACE, mass, 2, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  Impulses all = mine;
+  double values[27];
+  Vec3* parts[8] = {&all.gravity, &all.walls, &all.drag,    &all.fluid_force,
+                    &all.kicks,   &all.added, &all.removed, &all.fields};
+  double* amounts[3] = {&all.added_mass, &all.removed_mass, &all.exchanged};
+  for (int k = 0; k < 8; ++k) vec3(&values[3 * k]) = *parts[k];
+  for (int k = 0; k < 3; ++k) values[24 + k] = *amounts[k];
+  MPI_Allreduce(MPI_IN_PLACE, values, 27, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  for (int k = 0; k < 8; ++k) *parts[k] = vec3(&values[3 * k]);
+  for (int k = 0; k < 3; ++k) *amounts[k] = values[24 + k];
   mine = {};
-  return {vec3(values[0]), vec3(values[1]), vec3(values[2]), vec3(values[3]), vec3(values[4]),
-          vec3(values[5]), vec3(values[6]), mass[0],         mass[1]};
+  return all;
 }
 
 std::vector<std::string> Particles::wall_names() const {

@@ -23,6 +23,12 @@ struct FluidAction {
   double owed[3] = {0, 0, 0};  ///< N s, owed by the last fluid step, given as a force over the next; coupling keeps it
   double impulse[3] = {0, 0, 0};         ///< N s, drag impulse received since the last reset; the engine adds
   double start_velocity[3] = {0, 0, 0};  ///< m/s, velocity at the start of the fluid step; set by the coupling
+  double reaction[3] = {0, 0,
+                        0};    ///< N, part of `force` whose opposite acts on the fluid (lift ...); coupling keeps it
+  double added_mass = 0;       ///< kg, fluid that is accelerated with the particle: (m + added) dv/dt = forces
+  double spin[3] = {0, 0, 0};  ///< rad/s, half the fluid's vorticity
+  double field_impulse[3] = {0, 0, 0};  ///< N s, received from magnetic and other fields since the coupling reset it
+  double spin_exchange = 0;  ///< N m s, viscous torque spin_exchange (spin - w), relaxed exactly in the substeps
 };
 
 /// Counts of one advance(), for the progress line and the diagnostics (global).
@@ -54,6 +60,7 @@ struct Departed {
   int cell = -1;                ///< the last local cell that contained it
   int boundary = -1;            ///< index into Mesh::boundaries
   FluidAction action;           ///< with the drag impulse received in this advance
+  double acted = 0;             ///< s, how long `action.force` acted in this advance
   std::vector<double> columns;  ///< Columns::gather of its row
 };
 
@@ -88,6 +95,9 @@ class Particles {
   double radius(int i) const;
   double mass(int i) const;
   double volume(int i) const;
+  /// Whether particles have a temperature (`-heat_particles`), the column "temperature".
+  bool has_heat() const;
+  double heat_capacity(int i) const;  ///< J/K, m c_p
   int material(int i) const;
   int cell(int i) const;  ///< local cell that contains the centre
   FluidAction& fluid_action(int i);
@@ -136,12 +146,13 @@ class Particles {
   double kinetic_energy() const;
   double rotational_energy() const;
   double total_mass() const;
-  /// N s given to the particles by gravity, by walls and by fluid since the last call; momentum change = their sum.
-  /// Collective.
+  /// N s given to the particles by gravity, walls, fluid and applied fields since the last call; momentum change =
+  /// their sum. Collective.
   struct Impulses {
     Vec3 gravity = Vec3::Zero(), walls = Vec3::Zero(), drag = Vec3::Zero(), fluid_force = Vec3::Zero(),
-         kicks = Vec3::Zero(), added = Vec3::Zero(), removed = Vec3::Zero();
+         kicks = Vec3::Zero(), added = Vec3::Zero(), removed = Vec3::Zero(), fields = Vec3::Zero();
     double added_mass = 0, removed_mass = 0;  ///< kg
+    double exchanged = 0;  ///< N s, sum of the magnitudes of what fields made particles give each other
   };
   Impulses take_impulses();
 

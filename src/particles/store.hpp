@@ -22,6 +22,7 @@ struct Store {
   Aligned<Load> previous;        ///< contact forces of the step before
   Aligned<Row> origin;           ///< [owned] m, positions at the last rebuild
   Aligned<DragStep> drag;        ///< [owned] only while a fluid acts
+  Aligned<TurnStep> turning;     ///< [owned] only while a fluid holds the spins
   std::vector<std::int64_t> id;  ///< [owned + ghosts]
   std::vector<int> cell;         ///< [owned]
   std::vector<FluidAction> action;  ///< [owned]

@@ -80,9 +80,10 @@ struct WallSweep {
 };
 
 /// The fluid's share in a particle's motion over one substep, from FluidAction: exponential integration of
-/// m dv/dt = F + k (u - v).
+/// (m + added mass) dv/dt = F + k (u - v). `rate` is k over both masses.
 struct alignas(64) DragStep {
-  double velocity[4];      ///< m/s, u
+  double velocity[3];      ///< m/s, u
+  double share;            ///< m/(m + added mass): what of every force accelerates the particle
   double acceleration[4];  ///< m/s2, other fluid forces over the mass
   double impulse[4];       ///< N s, drag impulse received; summed up
   double rate;             ///< 1/s, k/m
@@ -91,12 +92,21 @@ struct alignas(64) DragStep {
   double corrector;        ///< s, psi/h; h/2 without drag
 };
 
+/// The fluid's hold on a particle's spin over one substep: I dw/dt = M + k (spin - w), integrated like the drag.
+struct alignas(64) TurnStep {
+  double spin[4];    ///< rad/s, that the fluid would have
+  double rate;       ///< 1/s, k/I
+  double first;      ///< s, (1 - exp(-rate h))/rate
+  double corrector;  ///< s, (h - first)/(rate h)
+};
+
 /// Velocity Verlet as predictor (drift: position, and velocity with the present force, so that velocity-dependent
 /// contact forces see the velocity of their own time) and corrector (half the change of the force).
 struct Integration {
   Motion* motion = nullptr;
   Load *present = nullptr, *previous = nullptr;  ///< forces at the present positions; those of the step before
   DragStep* drag = nullptr;                      ///< null: no fluid
+  const TurnStep* turning = nullptr;             ///< null: no viscous torque; only with drag
   const double (*origin)[4] = nullptr;           ///< m, positions at the last rebuild
   int count = 0;
   double dt = 0;

@@ -10,7 +10,7 @@
 namespace silt {
 
 StepLimit limit_step(const ParticleOptions& options, const Materials& materials, const ContactLaws& laws,
-                     const SmallestRadii& smallest, double speed) {
+                     const SmallestRadii& smallest, double speed, const std::vector<StepBound>& others) {
   StepLimit limit;
   const auto lower = [&](double step, const std::string& reason) {
     if (step < limit.step) limit = {step, reason};
@@ -44,6 +44,9 @@ StepLimit limit_step(const ParticleOptions& options, const Materials& materials,
                         laws.hertzian() ? fmt::format(" at {:.3g} m/s", speed) : std::string()));
     }
   }
+  for (const StepBound& other : others)
+    lower(options.step_fraction * other.duration,
+          fmt::format("{:.3g} of the time {:.3g} s of the {}", options.step_fraction, other.duration, other.reason));
   if (options.step > 0 && limit.step < infinity) {
     if (options.step > limit.step * (1 + 1e-12) && !options.step_override)
       throw UserError(

@@ -18,10 +18,16 @@ struct StepLimit {
   std::string reason = "no particles";
 };
 
+/// Another duration that the step must resolve like a collision.
+struct StepBound {
+  double duration;  ///< s
+  std::string reason;
+};
+
 /// Smallest of: a share of the shortest collision (of the chosen normal law, at `speed`, over all pairs of materials,
 /// walls included), and for the Hertz family a share of the Rayleigh time
 /// t_R = pi R sqrt(rho/G) / (0.1631 s + 0.8766), Li et al. 2005.
 StepLimit limit_step(const ParticleOptions& options, const Materials& materials, const ContactLaws& laws,
-                     const SmallestRadii& smallest, double speed);
+                     const SmallestRadii& smallest, double speed, const std::vector<StepBound>& others = {});
 
 }  // namespace silt

@@ -11,9 +11,15 @@ LAWS = {
     "twisting": "none twisting",
     "rolling": "none spring viscous_coulomb constant epsd",
     "drag": "stokes_cunningham schiller_naumann di_felice haider_levenspiel gidaspow ergun wen_yu beetstra koch_hill rong tang mazza",
+    "saffman": "none saffman_mei",
+    "magnus": "none rubinow_keller lun_liu",
+    "viscous_torque": "none stokes dennis",
+    "thermophoresis": "none waldmann general talbot",
+    "nusselt": "ranz_marshall gunn whitaker",
+    "magnetic": "none saturated linear langevin permanent fixed",
 }
 # Slots whose laws must name the paper they come from, `none` apart.
-SOURCED = ("normal", "tangential", "twisting", "rolling")
+SOURCED = ("normal", "tangential", "twisting", "rolling", "drag", "saffman", "magnus", "viscous_torque", "thermophoresis", "nusselt", "magnetic")
 
 
 def main():

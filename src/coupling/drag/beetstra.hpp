@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "coupling/drag/flow_around.hpp"
 
@@ -11,6 +12,8 @@ namespace silt {
 /// k = 3 pi mu d a F, Re = a rho d |u-v| / mu.
 struct BeetstraDrag {
   static constexpr const char* name = "beetstra";
+  static constexpr ModelNote note = {"", "Beetstra et al. 2007", "k = 3 pi mu d a F(a, Re)",
+                                     "creeping packed and dilute limits; terminal velocity"};
   void options(OptionGroup&) {}
   double exchange(const FlowAround& flow) const {
     const double a = flow.void_fraction, s = 1 - a, reynolds = std::max(flow.superficial_reynolds(), 1e-12);

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "coupling/drag/flow_around.hpp"
 
@@ -9,6 +10,8 @@ namespace silt {
 /// Packed bed, Ergun (1952): beta = 150 (1-a)^2 mu / (a d^2) + 1.75 (1-a) rho |u-v| / d, k = V_p beta / (1-a)  (7.98).
 struct ErgunDrag {
   static constexpr const char* name = "ergun";
+  static constexpr ModelNote note = {"(7.98)", "Ergun 1952", "k = V (150 (1-a) mu/(a d^2) + 1.75 rho |u-v|/d)",
+                                     "pressure drop of a fixed bed; terminal velocity"};
   void options(OptionGroup&) {}
   double exchange(const FlowAround& flow) const {
     const double d = flow.diameter, volume = std::numbers::pi / 6 * d * d * d;

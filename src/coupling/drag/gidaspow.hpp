@@ -1,4 +1,5 @@
 #pragma once
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "coupling/drag/ergun.hpp"
 #include "coupling/drag/wen_yu.hpp"
@@ -10,6 +11,10 @@ namespace silt {
 /// Gidaspow 2003).
 struct GidaspowDrag {
   static constexpr const char* name = "gidaspow";
+  static constexpr ModelNote note = {
+      "(7.98-7.99)", "Gidaspow 1994; Huilin & Gidaspow 2003",
+      "Ergun for a < 0.8, Wen & Yu above; blending: weights atan(262.5 (a - 0.8))/pi + 1/2",
+      "beta of all particles in a volume; both branches away from the joint; terminal velocity"};
   bool blending = false;
   void options(OptionGroup& option) {
     option("blending", blending, "join Ergun and Wen-Yu smoothly around a void fraction of 0.8 instead of switching");

@@ -1,4 +1,5 @@
 #pragma once
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "coupling/drag/flow_around.hpp"
 
@@ -22,6 +23,9 @@ struct HaiderLevenspielCoefficients {
 /// diameter of that sphere (7.84), Haider & Levenspiel 1989. Fitted for p >= 0.67 (and disks down to 0.026).
 struct HaiderLevenspielDrag {
   static constexpr const char* name = "haider_levenspiel";
+  static constexpr ModelNote note = {"(7.84-7.87)", "Haider & Levenspiel 1989",
+                                     "C_D = 24/Re (1 + b1 Re^b2) + b3 Re/(b4 + Re), b by sphericity",
+                                     "C_D at Re 0.01, 1, 100, 1000 for sphericity 0.6, 0.8, 1; terminal velocity"};
   double sphericity = 1;
   void options(OptionGroup& option) {
     option("sphericity", sphericity, "-", "surface of the sphere of equal volume over the particle's surface",

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "coupling/drag/flow_around.hpp"
 
@@ -12,6 +13,8 @@ namespace silt {
 /// above; F3 = 0.0673 + 0.212 s + 0.0232 / a^5.
 struct KochHillDrag {
   static constexpr const char* name = "koch_hill";
+  static constexpr ModelNote note = {"", "Hill, Koch & Ladd 2001", "k = 3 pi mu d a^2 (F0 + F3 Re/2)",
+                                     "dilute and packed limits, F3; terminal velocity"};
   void options(OptionGroup&) {}
   double exchange(const FlowAround& flow) const {
     const double a = flow.void_fraction, s = std::max(1 - a, 1e-12);

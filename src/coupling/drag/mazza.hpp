@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "coupling/drag/flow_around.hpp"
 
@@ -12,6 +13,9 @@ namespace silt {
 /// 1987), which gives n by iteration; k = V_p beta / (1-a).
 struct MazzaDrag {
   static constexpr const char* name = "mazza";
+  static constexpr ModelNote note = {"", "Mazzei & Lettieri 2007; Rowe 1987",
+                                     "k = V 3/4 C_D(Re/a^n) a rho |u-v|/d a^(2 - 2n)",
+                                     "settling by Richardson & Zaki's law; terminal velocity"};
   void options(OptionGroup&) {}
   /// Exponent of Richardson & Zaki at the Reynolds number of the single sphere's terminal velocity.
   static double exponent(double reynolds) {

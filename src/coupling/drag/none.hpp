@@ -1,4 +1,5 @@
 #pragma once
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "coupling/drag/flow_around.hpp"
 
@@ -7,6 +8,7 @@ namespace silt {
 /// No drag: particles and fluid share space and pressure only.
 struct NoDrag {
   static constexpr const char* name = "none";
+  static constexpr ModelNote note = {"", "", "k = 0", ""};
   void options(OptionGroup&) {}
   double exchange(const FlowAround&) const { return 0; }
 };

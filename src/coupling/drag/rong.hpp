@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "coupling/drag/flow_around.hpp"
 
@@ -11,6 +12,10 @@ namespace silt {
 /// 2), Re = a rho d |u-v| / mu.
 struct RongDrag {
   static constexpr const char* name = "rong";
+  static constexpr ModelNote note = {
+      "", "Rong, Dong & Yu 2013",
+      "Dallavalle in a (u - v), times a^-b, b = 2.65 (a + 1) - (5.3 - 3.5 a) a^2 exp(-(1.5 - log10 Re)^2/2)",
+      "exponent in creeping flow and at Re = 10^1.5; terminal velocity"};
   void options(OptionGroup&) {}
   double exchange(const FlowAround& flow) const {
     const double a = flow.void_fraction, reynolds = flow.superficial_reynolds();

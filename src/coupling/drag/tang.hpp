@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "coupling/drag/flow_around.hpp"
 
@@ -12,6 +13,8 @@ namespace silt {
 /// value there: C_D is constant.
 struct TangDrag {
   static constexpr const char* name = "tang";
+  static constexpr ModelNote note = {"", "Tang et al. 2015", "k = 3 pi mu d a F(a, Re)",
+                                     "creeping and dilute limits; terminal velocity"};
   void options(OptionGroup&) {}
   double exchange(const FlowAround& flow) const {
     const double a = flow.void_fraction, s = std::max(1 - a, 0.0), a4 = a * a * a * a;

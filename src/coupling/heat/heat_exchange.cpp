@@ -1,0 +1,122 @@
+#include "coupling/heat/heat_exchange.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "coupling/exchange.hpp"
+
+namespace silt {
+
+HeatExchange::HeatExchange(const Mesh& mesh, const std::vector<double>& mass, Particles& particles, Fluid& fluid,
+                           Options& options)
+    : mesh_(mesh),
+      mass_(mass),
+      particles_(particles),
+      fluid_(fluid),
+      nusselt_(NusseltModels::read(options, "nusselt", "ranz_marshall", "heat transfer between fluid and particles")) {
+  const Columns& columns = particles.columns();
+  temperature_ = columns.find("temperature");
+  outside_ = columns.find("fluid_temperature");
+  exchange_ = columns.find("heat_exchange");
+  received_ = columns.find("heat_received");
+}
+
+std::string HeatExchange::name() const {
+  return std::visit([](const auto& law) { return std::string(law.name); }, nusselt_);
+}
+
+void HeatExchange::before_particles(const Filter& filter, const Kernel& kernel, std::span<const double> alpha) {
+  const auto T = fluid_.temperature();
+  nodal_.assign(T.begin(), T.end());
+  filter.apply(nodal_.data(), 1);
+  const int count = particles_.owned();
+  at_particles_.resize(count);
+  kernel.sample(nodal_, at_particles_, 1);
+  Columns& columns = particles_.columns();
+  const double conductivity = fluid_.conductivity(),
+               prandtl = fluid_.viscosity() * fluid_.heat_capacity() / conductivity;
+  std::visit(
+      [&](const auto& law) {
+        for (int p = 0; p < count; ++p) {
+          const double diameter = 2 * particles_.radius(p);
+          const double speed = (vec3(particles_.fluid_action(p).velocity) - particles_.velocity(p)).norm();
+          const double reynolds = fluid_.density() * diameter * speed / fluid_.viscosity();
+          *columns.row(outside_, p) = at_particles_[p];
+          // h A = Nu lambda/d pi d^2
+          *columns.row(exchange_, p) =
+              law.nusselt({reynolds, prandtl, alpha[p]}) * conductivity * std::numbers::pi * diameter;
+          *columns.row(received_, p) = 0;
+        }
+      },
+      nusselt_);
+}
+
+void HeatExchange::before_fluid(double dt, double depth, const Filter& filter, const Kernel& kernel) {
+  const int count = particles_.owned(), all = kernel.count();
+  const Columns& columns = particles_.columns();
+  share_.resize(count);
+  at_particles_.assign(2 * static_cast<std::size_t>(all), 0.0);
+  ledger_ = HeatLedger{};
+  exchanged_ = 0;
+  for (int p = 0; p < count; ++p) {
+    const double capacity = particles_.heat_capacity(p);
+    share_[p] = -std::expm1(-*columns.row(exchange_, p) * dt / capacity);
+    at_particles_[2 * p] = *columns.row(received_, p);
+    at_particles_[2 * p + 1] = share_[p] * capacity;
+  }
+  for (int p = count; p < all; ++p)  // those that were taken out between steps took nothing
+    if (const auto& row = particles_.departed()[p - count].columns; !row.empty())
+      at_particles_[2 * p] = row[columns.offset(received_)];
+  for (int p = 0; p < all; ++p) {
+    ledger_.received += at_particles_[2 * p];
+    exchanged_ += std::abs(at_particles_[2 * p]);
+  }
+  nodal_.resize(2 * static_cast<std::size_t>(mesh_.nodes));
+  kernel.deposit(at_particles_, nodal_, 2);
+  for (int i = 0; i < mesh_.nodes; ++i)
+    for (int c = 0; c < 2; ++c) nodal_[2 * i + c] /= mass_[i] * depth;
+  filter.apply(nodal_.data(), 2);
+  ParticleLoad& load = fluid_.load();
+  for (int i = 0; i < mesh_.nodes; ++i) {
+    load.heat[i] = -mass_[i] * nodal_[2 * i] / dt;
+    load.heat_response[i] = mass_[i] * nodal_[2 * i + 1] / dt;
+  }
+  for (int i = 0; i < mesh_.owned_nodes; ++i) ledger_.given += depth * dt * load.heat[i];
+}
+
+void HeatExchange::after_fluid(double dt, double depth, const Filter& filter, const Kernel& kernel) {
+  const auto change = fluid_.temperature_change();
+  const ParticleLoad& load = fluid_.load();
+  for (int i = 0; i < mesh_.owned_nodes; ++i)
+    ledger_.response_on_fluid -= depth * dt * load.heat_response[i] * change[i];
+  nodal_.assign(change.begin(), change.end());
+  filter.apply(nodal_.data(), 1);
+  const int count = particles_.owned();
+  at_particles_.resize(count);
+  kernel.sample(nodal_, at_particles_, 1);
+  for (int p = 0; p < count; ++p) {
+    const double rise = share_[p] * at_particles_[p], heat = particles_.heat_capacity(p) * rise;
+    *particles_.columns().row(temperature_, p) += rise;
+    ledger_.response_on_particles += heat;
+    exchanged_ += std::abs(heat);
+  }
+  double sums[5] = {ledger_.received, ledger_.given, ledger_.response_on_particles, ledger_.response_on_fluid,
+                    exchanged_};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  ledger_ = {sums[0], sums[1], sums[2], sums[3], 0};
+  exchanged_ = sums[4];
+  const double imbalance = std::max(std::abs(ledger_.received + ledger_.given),
+                                    std::abs(ledger_.response_on_particles + ledger_.response_on_fluid));
+  ledger_.residual = exchanged_ > 0 ? imbalance / exchanged_ : 0;
+  if (!(ledger_.residual <= exchange_tolerance))
+    throw RunError(
+        fmt::format("the heat exchanged between fluid and particles is out of balance by {:.3g} of what was exchanged, "
+                    "allowed {:.0e}",
+                    ledger_.residual, exchange_tolerance));
+}
+
+}  // namespace silt

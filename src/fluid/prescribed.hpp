@@ -1,0 +1,61 @@
+#pragma once
+#include <optional>
+
+#include "base/expression.hpp"
+#include "base/nodal_gradient.hpp"
+#include "fluid/boundary/facets.hpp"
+#include "fluid/fluid.hpp"
+#include "fluid/fluid_options.hpp"
+
+namespace silt {
+
+/// The options `-fluid_...` of a flow that is given, not solved.
+struct PrescribedOptions {
+  std::string velocity = "0, 0, 0", pressure = "0", void_fraction, temperature;
+  double heat_capacity = 0, conductivity = 0;
+  void options(OptionGroup& option) {
+    option("velocity", velocity, "m/s, formulas in x, y, z, t: the velocity of a prescribed fluid");
+    option("pressure", pressure, "Pa, formula in x, y, z, t: the pressure of a prescribed fluid");
+    option("void_fraction", void_fraction,
+           "formula in x, y, z, t: the void fraction that the particles of a prescribed fluid see; default: their own");
+    option("temperature", temperature, "K, formula in x, y, z, t: the temperature of a prescribed fluid");
+    option("heat_capacity", heat_capacity, "J/(kg K)", "specific heat capacity of the fluid", non_negative);
+    option("conductivity", conductivity, "W/(m K)", "heat conductivity of the fluid", non_negative);
+  }
+};
+
+/// `-fluid_type prescribed`: velocity, pressure and void fraction by formulas at the mesh nodes. Particles feel it as
+/// they feel a solved flow; what they do to it changes nothing, and is accounted for all the same. For flows that are
+/// known, and for tests of every force without a solution.
+class Prescribed final : public Fluid {
+ public:
+  Prescribed(const Mesh& mesh, Options& options, const FluidOptions& fluid);
+
+  FluidStep advance(double time, double dt) override;
+  double courant_rate() const override;
+  std::span<const double> velocity() const override { return velocity_; }
+  std::span<const double> velocity_change() const override { return change_; }
+  std::span<const double> pressure() const override { return pressure_; }
+  std::span<const double> pressure_gradient() const override { return pressure_gradient_; }
+  std::span<const double> given_void_fraction() const override { return void_fraction_; }
+  std::span<const double> temperature() const override { return temperature_; }
+  std::span<const double> temperature_change() const override { return temperature_change_; }
+  std::vector<BoundaryFlow> boundary_flow() const override;
+  std::vector<StateArray> state() override;
+  void restored() override;
+
+ private:
+  void evaluate(double time);
+
+  const Mesh& mesh_;
+  VectorExpression velocity_formula_;
+  Expression pressure_formula_;
+  std::optional<Expression> void_fraction_formula_, temperature_formula_;
+  std::vector<double> mass_;
+  NodalGradient gradient_;
+  std::vector<FacetRule> facets_;
+  std::vector<double> velocity_, change_, pressure_, pressure_gradient_, void_fraction_, temperature_,
+      temperature_change_;
+};
+
+}  // namespace silt

@@ -1,0 +1,46 @@
+#pragma once
+#include "base/options.hpp"
+#include "particles/store.hpp"
+#include "particles/sweep.hpp"
+
+namespace silt {
+
+inline constexpr double boltzmann = 1.380649e-23;  ///< J/K
+
+/// The options `-brownian_...`.
+struct BrownianOptions {
+  double temperature = 0;
+  bool overdamped = false;
+  int seed = 1;
+  void options(OptionGroup& option) {
+    option("temperature", temperature, "K",
+           "temperature of the Brownian motion that goes with drag (and with the viscous torque); 0: none",
+           non_negative);
+    option("overdamped", overdamped,
+           "particles have no inertia: dx = (u + F/k) dt + noise; for steps far beyond the response time");
+    option("seed", seed, "-", "another seed, another noise", at_least(0));
+  }
+};
+
+/// Brownian motion (3.293) by the exact step of Ornstein & Uhlenbeck: over a substep h the drag k (u - v) of a particle
+/// of mass m, rate r = k/m, z = r h, goes with jointly normal changes of velocity and position,
+///   <dv^2> = (k_B T/m) (1 - e^{-2z}),  <dx dv> = (k_B T/m) (1 - e^{-z})^2/r,
+///   <dx^2> - <dx dv>^2/<dv^2> = (k_B T/m) 2 (z - 2 tanh(z/2))/r^2
+/// in each direction, so that the friction of the motion is that of the noise for every h. The spin of a particle with
+/// viscous torque likewise. The random numbers are a function of particle id, time and seed: any ranks give the same.
+class Brownian {
+ public:
+  explicit Brownian(const BrownianOptions& options) : options_(options) {}
+  bool active() const { return options_.temperature > 0; }
+  bool overdamped() const { return options_.overdamped; }
+  /// m/s, speed that few particles of this mass exceed: three times the root mean square.
+  double speed(double mass) const;
+  /// Moves the particles of a drift pass on; `time` is that of the end of the substep. Adds what they received to
+  /// DragStep::impulse: it comes from the fluid. Returns the largest squared displacement since the last rebuild.
+  double act(Store& store, const Integration& step, double time) const;
+
+ private:
+  BrownianOptions options_;
+};
+
+}  // namespace silt

@@ -1,0 +1,61 @@
+#pragma once
+#include <optional>
+
+#include "particles/field/given_field.hpp"
+#include "particles/field/magnetisation.hpp"
+#include "particles/force_field.hpp"
+#include "particles/pair_sums.hpp"
+
+namespace silt {
+
+/// The options `-magnetic_...` that all models of the moment share.
+struct MagneticOptions {
+  std::string field, flux_density;
+  double cutoff = 0, tolerance = 1e-8;
+  int iterations = 200, seed = 1;
+  Vec3 direction = Vec3::Zero();
+  void options(OptionGroup& option) {
+    option("field", field, "A/m, formulas in x, y, z, t: the applied field H");
+    option("flux_density", flux_density, "T, formulas in x, y, z, t: mu0 H of the applied field, instead of field");
+    option("cutoff", cutoff, "m", "dipoles further apart do not act on each other; 0: all do", non_negative);
+    option("tolerance", tolerance, "-", "change of the moments, relative to the largest, at which they are found",
+           Range{0, 1, true, true});
+    option("iterations", iterations, "-", "the moments not found by then, the run stops", at_least(1));
+    option("direction", direction, "-", "of permanent and fixed moments at the start; 0, 0, 0: at random");
+    option("seed", seed, "-", "another seed, other random directions", at_least(0));
+  }
+};
+
+/// Magnetic dipoles (7.77-7.80): moments by the model chosen, forces between all pairs or up to a cut-off, force and
+/// torque of the applied field. The moment is the column "magnetic_moment", A m2.
+class Magnetic final : public ForceField {
+ public:
+  /// Null for `-magnetic_type none`.
+  static std::unique_ptr<Magnetic> create(Options& options, const Mesh& mesh, Columns& columns,
+                                          const std::string& instructions);
+  Magnetic(MagneticModels::Any model, const MagneticOptions& options, const Mesh& mesh, Columns& columns,
+           const std::string& instructions);
+  void act(FieldStep& step) override;
+  std::vector<StepBound> bounds(const Materials& materials, const SmallestRadii& smallest) const override;
+  std::string description() const override;
+
+ private:
+  void apply(FieldStep& step, double* moment) const;
+  /// The moments that agree with the field of all others; leaves the sources ready.
+  void find_moments(FieldStep& step, double* moment);
+  Vec3 applied(const Vec3& x, double time) const { return scale_ * field_(x, time); }
+
+  MagneticModels::Any model_;
+  MagneticOptions options_;
+  MomentFollows follows_;
+  GivenField field_;
+  double scale_;      ///< from what the user gave to A/m
+  double strongest_;  ///< A/m, of the applied field, as sampled
+  int column_;
+  mutable bool warned_ = false;  ///< of a short cut-off
+  const PairKernels& kernels_;
+  PairSources sources_;
+  PairSums force_, neighbours_;
+};
+
+}  // namespace silt

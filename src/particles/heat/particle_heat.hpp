@@ -1,0 +1,66 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "base/expression.hpp"
+#include "base/options.hpp"
+#include "particles/contact_lists.hpp"
+#include "particles/materials.hpp"
+#include "particles/store.hpp"
+
+namespace silt {
+
+/// The options `-heat_...` of the particles.
+struct HeatOptions {
+  bool particles = false, conduction = false;
+  std::string initial_temperature = "293.15", source = "0", environment = "293.15", contact_radius = "hertz";
+  double emissivity = 0;
+  std::optional<double> real_young_modulus;
+  void options(OptionGroup& option) {
+    option("particles", particles, "particles have a temperature");
+    option("initial_temperature", initial_temperature, "K, formula in x, y, z: temperature of new particles");
+    option("source", source, "W/m3 of particle, formula in x, y, z, t: heat made in the particles");
+    option("conduction", conduction, "particles that touch conduct heat (Batchelor & O'Brien 1977)");
+    option("contact_radius", contact_radius, {"hertz", "lens"},
+           "radius of a contact: hertz, (R_eff x)^1/2; lens, of the circle in which the spheres intersect");
+    option("real_young_modulus", real_young_modulus, "Pa",
+           "Young's modulus of the real material where the particles are softer: contact radii are reduced by "
+           "(E/E_real)^1/5",
+           positive);
+    option("emissivity", emissivity, "-", "of the particles, for radiation to the environment; 0: none", fraction);
+    option("environment", environment, "K, formula in x, y, z, t: temperature that particles radiate to");
+  }
+};
+
+/// Temperature of the particles (7.95): m c_p dT/dt = h A (T_f - T) + source + contact conduction + radiation. What the
+/// fluid gives is set by the coupling and relaxed exactly within each substep; the rest is taken at its start.
+///
+/// Columns: "temperature" (K), "fluid_temperature" (K) and "heat_exchange" (h A, W/K), constant over a fluid step, and
+/// "heat_received" (J) from the fluid since somebody reset it.
+class ParticleHeat {
+ public:
+  /// Null unless `-heat_particles yes`. Throws UserError for a material without heat capacity.
+  static std::unique_ptr<ParticleHeat> create(Options& options, const Materials& materials, Columns& columns);
+  ParticleHeat(const HeatOptions& options, const Materials& materials, Columns& columns);
+
+  /// Moves the temperatures of this rank's particles on by dt, up to `time`.
+  void advance(Store& store, const ContactLists& contacts, const Periods& periods, double time, double dt);
+  /// J/K, m c_p of a particle.
+  double capacity(const Motion& motion) const {
+    return materials_[static_cast<int>(motion.material)].heat_capacity.value_or(0) / motion.inverse_mass;
+  }
+  /// s, in which conduction between the smallest particles that overlap by a tenth of their radius would even out.
+  double conduction_time(double radius, int material) const;
+
+ private:
+  void conduct(Store& store, const ContactLists& contacts, const Periods& periods);
+
+  HeatOptions options_;
+  const Materials& materials_;
+  Expression source_, environment_;
+  std::shared_ptr<Expression> initial_;
+  int temperature_, fluid_temperature_, exchange_, received_;
+  std::vector<double> gain_;  ///< [owned + ghosts + 2] W
+};
+
+}  // namespace silt

@@ -1,0 +1,127 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "gas_box.hpp"
+
+using namespace silt;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+BoxCase warm(const std::string& temperature) {
+  BoxCase setup;
+  setup.box(Vec3::Constant(-5e-3), Vec3::Constant(5e-3));
+  setup.set("heat_particles", "yes").set("heat_initial_temperature", temperature);
+  setup.set("material_bead_heat_capacity", "800").set("material_bead_conductivity", "2").set("particles_speed", "0.1");
+  return setup;
+}
+
+double* column(Particles& particles, const char* name, int p) {
+  return particles.columns().row(particles.columns().find(name), p);
+}
+
+/// Temperatures by id on every rank.
+std::map<std::int64_t, double> temperatures(Particles& particles, int count) {
+  std::vector<double> all(count, 0.0);
+  for (int p = 0; p < particles.owned(); ++p) all[particles.id(p)] = *column(particles, "temperature", p);
+  MPI_Allreduce(MPI_IN_PLACE, all.data(), count, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  std::map<std::int64_t, double> result;
+  for (int k = 0; k < count; ++k) result[k] = all[k];
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("Two spheres pressed together even out their temperatures as MFiX's case and its closed form say",
+          "[heat][mpi]") {
+  // Radii 1.5 and 1.8 mm, centres 3.299868 mm apart; 298.15 and 453.15 K.
+  for (const std::string radius : {"lens", "hertz"}) {
+    BoxCase setup = warm("z < 0 ? 298.15 : 453.15");
+    setup.set("material_bead_heat_capacity", "800.53")
+        .set("material_bead_conductivity", "55")
+        .set("material_bead_density", "420");
+    setup.set("material_cap_density", "8850")
+        .set("material_cap_heat_capacity", "55.04")
+        .set("material_cap_conductivity", "0.84");
+    setup.set("heat_conduction", "yes").set("heat_contact_radius", radius).set("particles_fixed", "yes");
+    BoxRun run(setup);
+    const double r1 = 1.5e-3, r2 = 1.8e-3, distance = (0.4799731 - 0.1499864) * 1e-2;
+    Seed low = sphere(Vec3(0, 0, -0.5 * distance), Vec3::Zero(), r1),
+         high = sphere(Vec3(0, 0, 0.5 * distance), Vec3::Zero(), r2);
+    high.material = 1;
+    run.particles.add({low, high});
+    for (int n = 0; n < 10; ++n) run.particles.advance(0.1 * n, 0.1);
+    const double overlap = r1 + r2 - distance, plane = (r1 * r1 - r2 * r2 + distance * distance) / (2 * distance);
+    const double a = radius == "lens" ? std::sqrt(r1 * r1 - plane * plane) : std::sqrt(r1 * r2 / (r1 + r2) * overlap);
+    const double k = 4 * a / (1 / 55.0 + 1 / 0.84);
+    const double c1 = 420 * 4.0 / 3 * pi * r1 * r1 * r1 * 800.53, c2 = 8850 * 4.0 / 3 * pi * r2 * r2 * r2 * 55.04;
+    const double mean = (c1 * 298.15 + c2 * 453.15) / (c1 + c2), decay = std::exp(-k * (1 / c1 + 1 / c2));
+    const auto T = temperatures(run.particles, 2);
+    CHECK(T.at(0) == Approx(mean + (298.15 - mean) * decay).epsilon(1e-6));
+    CHECK(T.at(1) == Approx(mean + (453.15 - mean) * decay).epsilon(1e-6));
+    CHECK(c1 * (T.at(0) - 298.15) + c2 * (T.at(1) - 453.15) == Approx(0).margin(1e-13 * c1 * 298));
+    if (radius == "lens") {
+      CHECK(T.at(0) == Approx(299.7320).margin(2e-3));
+      CHECK(T.at(1) == Approx(452.5180).margin(2e-3));
+    }
+  }
+}
+
+TEST_CASE("A particle cools in a fluid as exp(-h A t/(m c_p)) whatever the step, and the heat it gave is counted",
+          "[heat][mpi]") {
+  BoxRun run(warm("400").set("heat_source", "1e6*t*0 + 2e6"));
+  run.particles.add({sphere(Vec3::Zero(), Vec3::Zero(), 1e-3)});
+  const double volume = 4.0 / 3 * pi * 1e-9, capacity = 2500 * volume * 800, exchange = 3e-2, made = 2e6 * volume;
+  double end = 0;
+  for (const double dt : {0.01, 2.0}) {
+    for (int p = 0; p < run.particles.owned(); ++p) {
+      *column(run.particles, "fluid_temperature", p) = 300;
+      *column(run.particles, "heat_exchange", p) = exchange;
+    }
+    run.particles.advance(end, dt);
+    end += dt;
+  }
+  const double rest = 300 + made / exchange, left = std::exp(-exchange * end / capacity);
+  for (int p = 0; p < run.particles.owned(); ++p) {
+    const double T = *column(run.particles, "temperature", p);
+    CHECK(T == Approx(rest + (400 - rest) * left).epsilon(1e-10));
+    CHECK(*column(run.particles, "heat_received", p) == Approx(capacity * (T - 400) - made * end).epsilon(1e-9));
+    CHECK(run.particles.heat_capacity(p) == Approx(capacity));
+  }
+}
+
+TEST_CASE("A hot particle radiates to its environment as e sigma A (T_env^4 - T^4)", "[heat]") {
+  BoxRun run(warm("1200").set("heat_emissivity", "0.8").set("heat_environment", "300"));
+  run.particles.add({sphere(Vec3::Zero(), Vec3::Zero(), 1e-4)});
+  run.particles.advance(0, 1e-3);
+  const double rate = 0.8 * 5.670374419e-8 * 3 / (1e-4 * 2500 * 800) * (std::pow(300.0, 4) - std::pow(1200.0, 4));
+  CHECK(*column(run.particles, "temperature", 0) - 1200 == Approx(rate * 1e-3).epsilon(1e-2));
+}
+
+TEST_CASE("Heat of colliding particles is kept to round-off and evens out, on any ranks", "[heat][mpi]") {
+  BoxCase setup = warm("300 + 1e4*x").periodic();
+  setup.set("heat_conduction", "yes").set("material_bead_young_modulus", "1e6");
+  BoxRun run(setup);
+  run.particles.add(gas(6, Vec3::Constant(-5e-3), Vec3::Constant(5e-3), 0.75e-3, 0.5));
+  const auto heat = [&] {
+    double sum = 0, spread = 0;
+    for (const auto& [id, T] : temperatures(run.particles, 216)) sum += T, spread += (T - 300) * (T - 300);
+    return std::pair(sum, spread);
+  };
+  const auto before = heat();
+  for (int n = 0; n < 4; ++n) run.particles.advance(n * 5e-3, 5e-3);
+  const auto after = heat();
+  CHECK(after.first == Approx(before.first).epsilon(1e-13));
+  CHECK(after.second < before.second * (1 - 1e-7));
+}
+
+TEST_CASE("Particles with a temperature need a heat capacity, and a conductivity to conduct", "[heat]") {
+  BoxCase none;
+  none.set("heat_particles", "yes");
+  CHECK_THROWS_AS(BoxRun(none), UserError);
+  none.set("material_bead_heat_capacity", "100").set("heat_conduction", "yes");
+  CHECK_THROWS_AS(BoxRun(none), UserError);
+}
