@@ -9,6 +9,7 @@
 #include "coupling/heat/nusselt.hpp"
 #include "coupling/thermophoresis.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
+#include "fluid/compressible/compressible.hpp"
 #include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/monolithic.hpp"
@@ -51,6 +52,7 @@ Options everything() {
   declare<MeshOptions>(options, "mesh");
   declare<FluidOptions>(options, "fluid");
   declare<EnergyOptions>(options, "fluid");
+  declare<CompressibleOptions>(options, "fluid");
   declare<PressureCorrectionOptions>(options, "fluid");
   declare<MonolithicOptions>(options, "fluid");
   declare<PrescribedOptions>(options, "fluid");

@@ -46,7 +46,7 @@ const std::vector<std::string> particle_columns = {"particles",
                                                    "particle_velocity_z"};
 const std::vector<std::string> heat_columns = {"fluid_heat", "energy_iterations", "least_temperature",
                                                "mean_temperature", "largest_temperature"};
-const std::vector<std::string> flow_columns = {"volume_flow", "pressure", "force_x", "force_y", "force_z"};
+const std::vector<std::string> flow_columns = {"volume_flow", "mass_flow", "pressure", "force_x", "force_y", "force_z"};
 
 constexpr int height_bins = 1024;
 
@@ -141,11 +141,14 @@ void Diagnostics::measure_fluid(const Moment& moment, std::vector<double>& row, 
   const auto u = fluid.velocity();
   const auto& alpha = fluid.load().void_fraction;
   double fastest = 0, least = 1;
-  std::array<double, 5> sum{};  // kinetic energy / rho, int alpha, int alpha u
+  std::array<double, 5> sum{};      // kinetic energy, int alpha, int alpha u
+  std::span<const double> density;  // where it is no constant
+  for (const auto& scalar : fluid.scalars())
+    if (scalar.name == "density") density = scalar.values;
   for (int i = 0; i < mesh_.owned_nodes; ++i) {
     const Map<const Vec3> v = vec3(&u[3 * static_cast<size_t>(i)]);
     const double share = mass_[i] * alpha[i], square = v.squaredNorm();
-    sum[0] += 0.5 * share * square;
+    sum[0] += 0.5 * share * square * (density.empty() ? fluid.density() : density[i]);
     sum[1] += share;
     for (int d = 0; d < 3; ++d) sum[2 + d] += share * v[d];
     fastest = std::max(fastest, square);
@@ -162,7 +165,8 @@ void Diagnostics::measure_fluid(const Moment& moment, std::vector<double>& row, 
     low = std::min(low, flow.mean_pressure);
     (role_[b] > 0 ? given : outlet) += role_[b] == 0 ? 0 : area_[b] * flow.mean_pressure;
     (role_[b] > 0 ? given_area : outlet_area) += role_[b] == 0 ? 0 : area_[b];
-    for (double value : {flow.volume_flow, flow.mean_pressure, flow.force[0], flow.force[1], flow.force[2]})
+    for (double value :
+         {flow.volume_flow, flow.mass_flow, flow.mean_pressure, flow.force[0], flow.force[1], flow.force[2]})
       flows.push_back(value);
     if (with_heat_) flows.push_back(flow.heat_flow);
   }
@@ -172,8 +176,8 @@ void Diagnostics::measure_fluid(const Moment& moment, std::vector<double>& row, 
   const FluidStep& step = moment.fluid_step;
   for (double value : {step.courant, static_cast<double>(step.velocity_iterations),
                        static_cast<double>(step.pressure_iterations), static_cast<double>(step.newton_iterations),
-                       step.mass_residual, drop, in, out, fluid.density() * sum[0], std::sqrt(mpi_max(fastest)),
-                       mpi_min(least), sum[1] / mesh_.volume, sum[2] / sum[1], sum[3] / sum[1], sum[4] / sum[1]})
+                       step.mass_residual, drop, in, out, sum[0], std::sqrt(mpi_max(fastest)), mpi_min(least),
+                       sum[1] / mesh_.volume, sum[2] / sum[1], sum[3] / sum[1], sum[4] / sum[1]})
     row.push_back(value);
   if (!with_heat_) return;
   const auto T = fluid.temperature();

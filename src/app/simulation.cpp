@@ -81,6 +81,9 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
       restart_->refuse(particles_ ? "has no particles, this case has some" : "has particles, this case has none");
     if (particles_) particles_->load(*restart_, carried_ != nullptr);
   }
+  if (fluid_ && particles_ && options.find("fluid_type").value_or("") == "compressible")
+    throw UserError(
+        "-fluid_type compressible carries no particles yet: give -fluid_type incompressible or no -insertion_...");
   if (fluid_ && particles_)
     coupling_ = std::make_unique<Coupling>(*mesh_, *particles_, *fluid_, options, case_.gravity);
   if (!coupling_ && options.given("brownian_temperature"))
@@ -189,6 +192,7 @@ void Simulation::choose_step() {
     if (rate > 0) longest = std::min(longest, time_options_.courant / rate);
     if (now_.step > 0) longest = std::min(longest, 1.2 * now_.dt);
   }
+  if (fluid_) longest = std::min(longest, fluid_->longest_step(now_.step > 0 ? now_.dt : 0));
   const double left = std::min(output_->next(now_.time), time_options_.end) - now_.time;
   // Equal steps up to the target leave no sliver at its end.
   dt_ = left / std::max(1.0, std::ceil(left / longest * (1 - 1e-9)));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "fluid/compressible/compressible.hpp"
 #include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/monolithic.hpp"
@@ -27,11 +28,25 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
   FluidOptions fluid;
   options.read("fluid", fluid);
   if (fluid.type == "none" || !mentioned(mesh, options)) return nullptr;
+  const bool compressible = fluid.type == "compressible";
   for (const char* name : {"fluid_density", "fluid_viscosity"})
-    if (!options.given(name)) throw UserError(std::string("-") + name + " is missing: the fluid needs it");
+    if (!options.given(name) && !(compressible && std::string(name) == "fluid_density"))
+      throw UserError(std::string("-") + name + " is missing: the fluid needs it");
   if (fluid.scheme != "monolithic" && options.find("fluid_element").value_or("equal_order") != "equal_order")
     throw UserError(fmt::format("option -fluid_element ({}): '{}' needs -fluid_scheme monolithic",
                                 options.origin("fluid_element"), *options.find("fluid_element")));
+  if (compressible) {
+    if (options.given("fluid_scheme") && fluid.scheme != "monolithic")
+      throw UserError("-fluid_scheme pressure_correction is not available with -fluid_type compressible");
+    if (options.given("fluid_energy") && !fluid.energy)
+      throw UserError("-fluid_energy no is not available with -fluid_type compressible");
+    auto gas = make_compressible(mesh, options, fluid, gravity);
+    gas->unknowns_ = (mesh.dimension + 2) * mesh.total_nodes;
+    gas->description_ = fmt::format("compressible, ideal gas, {} Pa s, BDF{}", fluid.viscosity, fluid.order);
+    return gas;
+  }
+  if (!(fluid.viscosity > 0))
+    throw UserError("option -fluid_viscosity: it must be above 0 unless the flow is compressible");
   if (fluid.type == "prescribed") {
     auto given = std::make_unique<Prescribed>(mesh, options, fluid);
     given->description_ =

@@ -41,6 +41,7 @@ struct FluidStep {
 /// Volume flow and force per named boundary.
 struct BoundaryFlow {
   double volume_flow = 0;     ///< m3/s, int alpha u.n, positive out
+  double mass_flow = 0;       ///< kg/s, positive out
   double mean_pressure = 0;   ///< Pa
   Vec3 force = Vec3::Zero();  ///< N, force of the fluid on the boundary
   double heat_flow = 0;       ///< W, heat that leaves, conducted and carried
@@ -77,6 +78,12 @@ class Fluid {
   virtual FluidStep advance(double time, double dt) = 0;
   /// Largest |u| dt/h of the present state for a unit step (1/s). Collective.
   virtual double courant_rate() const = 0;
+
+  /// Longest step, s, that the scheme advises after one of `last` s (0: none yet). Collective.
+  virtual double longest_step(double last) const {
+    (void)last;
+    return infinity;
+  }
 
   /// [nodes][3] m/s, interstitial velocity; consistent on shared nodes.
   virtual std::span<const double> velocity() const = 0;

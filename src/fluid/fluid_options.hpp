@@ -21,7 +21,7 @@ struct FluidOptions {
   std::string body_force = "0, 0, 0";
 
   void options(OptionGroup& option) {
-    option("type", type, {"incompressible", "prescribed", "none"},
+    option("type", type, {"incompressible", "compressible", "prescribed", "none"},
            "the carrier fluid; prescribed: given by formulas, not solved; none: particles only");
     option("scheme", scheme, {"pressure_correction", "monolithic"},
            "pressure_correction: semi-implicit, velocity and pressure one after the other; monolithic: one Newton "
@@ -30,7 +30,8 @@ struct FluidOptions {
            "volume-averaged form: a, pressure gradient shared by both phases; b, all on the "
            "fluid");
     option("density", density, "kg/m3", "density of the fluid", positive);
-    option("viscosity", viscosity, "Pa s", "dynamic viscosity of the fluid", positive);
+    option("viscosity", viscosity, "Pa s", "dynamic viscosity of the fluid; 0: none (compressible flow only)",
+           non_negative);
     option("order", order, "-", "order of the backward difference formula in time", between(1, 2));
     option("backflow", backflow, "-",
            "share of the momentum that inflow through a pressure boundary loses there; 0.5 bounds the energy, 0 is "

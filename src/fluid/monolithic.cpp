@@ -292,6 +292,7 @@ std::vector<BoundaryFlow> Monolithic::boundary_flow() const {
     const bool open = boundary_.type(static_cast<int>(b)) == BoundaryType::pressure;
     result[b].volume_flow = open ? integrals[b].volume_flow : boundary_.boundary_flow()[b];
     result[b].mean_pressure = integrals[b].area > 0 ? integrals[b].pressure / integrals[b].area : 0;
+    result[b].mass_flow = density_ * result[b].volume_flow;
     if (energy_) result[b].heat_flow = energy_->heat_flow()[b];
     result[b].force = open ? integrals[b].traction : forces[b];
   }

@@ -16,18 +16,24 @@ constexpr int symmetric[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}
 }  // namespace
 
 void BoundaryOptions::options(OptionGroup& option) {
-  option("type", type, {"no_slip", "slip", "symmetry", "velocity", "mass_flow", "pressure"},
-         "what the flow obeys on this boundary; slip and symmetry are the same");
+  option("type", type,
+         {"no_slip", "slip", "symmetry", "velocity", "mass_flow", "pressure", "total_pressure", "far_field",
+          "supersonic_inflow", "supersonic_outflow"},
+         "what the flow obeys on this boundary; slip and symmetry are the same; the last four are for compressible "
+         "flow");
   option("velocity", velocity,
          "m/s; type velocity: superficial velocity (void fraction times velocity) as formulas in x, y, z, t; type "
-         "no_slip: velocity of the wall");
+         "no_slip: velocity of the wall; far_field, supersonic_inflow: velocity outside");
   option("mass_flow", mass_flow, "kg/s into the domain (per metre of depth in 2D), a formula in t; uniform and normal");
-  option("pressure", pressure, "Pa, formula in x, y, z, t");
+  option(
+      "pressure", pressure,
+      "Pa, formula in x, y, z, t: static pressure (pressure), stagnation pressure (total_pressure), pressure outside "
+      "(far_field, supersonic_inflow)");
   option.group("temperature", temperature);
 }
 
-BoundaryConditions::BoundaryConditions(const Mesh& mesh, Options& options, double density)
-    : mesh_(mesh), density_(density), facets_(facet_rules(mesh)) {
+BoundaryConditions::BoundaryConditions(const Mesh& mesh, Options& options, double density, bool compressible)
+    : mesh_(mesh), compressible_(compressible), density_(density), facets_(facet_rules(mesh)) {
   read(options);
   areas_.assign(mesh.boundaries.size(), 0);
   for (const auto& facet : facets_)
@@ -53,11 +59,19 @@ void BoundaryConditions::read(Options& options) {
       continue;
     }
     using enum BoundaryType;
-    condition.type = given.type == "no_slip"     ? no_slip
-                     : given.type == "velocity"  ? velocity
-                     : given.type == "mass_flow" ? mass_flow
-                     : given.type == "pressure"  ? pressure
-                                                 : slip;
+    condition.type = given.type == "no_slip"              ? no_slip
+                     : given.type == "velocity"           ? velocity
+                     : given.type == "mass_flow"          ? mass_flow
+                     : given.type == "pressure"           ? pressure
+                     : given.type == "total_pressure"     ? total_pressure
+                     : given.type == "far_field"          ? far_field
+                     : given.type == "supersonic_inflow"  ? supersonic_inflow
+                     : given.type == "supersonic_outflow" ? supersonic_outflow
+                                                          : slip;
+    if (!compressible_ && condition.type > pressure)
+      throw UserError(fmt::format("-{}_type ({}): '{}' needs -fluid_type compressible", prefix,
+                                  options.origin(prefix + "_type"), given.type));
+    const bool outside = condition.type == far_field || condition.type == supersonic_inflow;
     const auto check = [&](const char* property, bool allowed, bool required) {
       const std::string option = prefix + "_" + property;
       if (options.given(option) && !allowed)
@@ -65,21 +79,23 @@ void BoundaryConditions::read(Options& options) {
       if (required && !options.given(option))
         throw UserError(fmt::format("-{} is missing: boundary {} has type {}", option, name, given.type));
     };
-    check("velocity", condition.type == velocity || condition.type == no_slip, condition.type == velocity);
+    check("velocity", condition.type == velocity || condition.type == no_slip || outside,
+          condition.type == velocity || condition.type == supersonic_inflow);
     check("mass_flow", condition.type == mass_flow, condition.type == mass_flow);
-    check("pressure", condition.type == pressure, false);
+    check("pressure", condition.type == pressure || condition.type == total_pressure || outside,
+          condition.type == total_pressure || outside || (compressible_ && condition.type == pressure));
     condition.moving = condition.type == no_slip && options.given(prefix + "_velocity");
     condition.velocity = std::make_unique<VectorExpression>(prefix + "_velocity", given.velocity);
     condition.mass_flow = std::make_unique<Expression>(prefix + "_mass_flow", given.mass_flow);
     condition.pressure = std::make_unique<Expression>(prefix + "_pressure", given.pressure);
-    closed_ = closed_ && condition.type != pressure;
+    closed_ = closed_ && condition.type < pressure;
     conditions_.push_back(std::move(condition));
   }
   if (!missing.empty())
-    throw UserError(
-        fmt::format("no condition on boundary {}: give -boundary_<name>_type no_slip, slip, symmetry, "
-                    "velocity, mass_flow or pressure",
-                    missing));
+    throw UserError(fmt::format(
+        "no condition on boundary {}: give -boundary_<name>_type no_slip, slip, symmetry, "
+        "velocity, mass_flow or pressure{}",
+        missing, compressible_ ? ", total_pressure, far_field, supersonic_inflow or supersonic_outflow" : ""));
 }
 
 void BoundaryConditions::find_nodes() {
@@ -110,8 +126,8 @@ void BoundaryConditions::find_nodes() {
     for (int i = 0; i < nodes; i++) {
       const double* t = &touch[10 * static_cast<std::size_t>(i)];
       if (t[0] == 0) continue;
-      if (condition.type == BoundaryType::pressure) {
-        if (pressure_boundary_[i] < 0) pressure_boundary_[i] = b;
+      if (open(b)) {
+        if (condition.type == BoundaryType::pressure && pressure_boundary_[i] < 0) pressure_boundary_[i] = b;
         continue;
       }
       if (condition.type == BoundaryType::slip)
@@ -150,7 +166,7 @@ void BoundaryConditions::find_constraints(const std::vector<double>& slip_normal
 void BoundaryConditions::evaluate(double time, const double* void_fraction) {
   std::vector<double> normal_speed(conditions_.size(), 0);
   for (std::size_t b = 0; b < conditions_.size(); b++)
-    if (conditions_[b].type == BoundaryType::mass_flow)
+    if (conditions_[b].type == BoundaryType::mass_flow && !compressible_)
       normal_speed[b] = -(*conditions_[b].mass_flow)(Vec3::Zero(), time) / (density_ * areas_[b]);
   for (const auto& constraint : constraints_) {
     const int i = constraint.node, b = velocity_boundary_[i];
@@ -188,6 +204,7 @@ void BoundaryConditions::add_flow(double time) {
   std::fill(flow_.begin(), flow_.end(), 0.0);
   std::fill(boundary_flow_.begin(), boundary_flow_.end(), 0.0);
   throughput_ = 0;
+  if (compressible_) return;
   bool flows = false;
   for (const auto& condition : conditions_)
     flows = flows || condition.type == BoundaryType::velocity || condition.type == BoundaryType::mass_flow;

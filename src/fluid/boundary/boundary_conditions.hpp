@@ -15,7 +15,17 @@
 namespace silt {
 
 /// What the flow obeys on a boundary; the smaller value wins where boundaries with different conditions meet.
-enum class BoundaryType { no_slip, velocity, mass_flow, slip, pressure };
+enum class BoundaryType {
+  no_slip,
+  velocity,
+  mass_flow,
+  slip,
+  pressure,
+  total_pressure,
+  far_field,
+  supersonic_inflow,
+  supersonic_outflow
+};
 
 /// The options `-boundary_<name>_...` of the fluid.
 struct BoundaryOptions {
@@ -42,9 +52,19 @@ class BoundaryConditions {
  public:
   /// Reads `-boundary_<name>_...` for every boundary of the mesh; throws UserError for one without a condition or with
   /// parameters that do not fit its type. Collective.
-  BoundaryConditions(const Mesh& mesh, Options& options, double density);
+  /// Compressible flow has boundaries of its own (total_pressure, far_field, supersonic_...), its mass_flow leaves the
+  /// velocity free, and `density` is not used.
+  BoundaryConditions(const Mesh& mesh, Options& options, double density, bool compressible = false);
 
   BoundaryType type(int boundary) const { return conditions_[boundary].type; }
+  /// True when the velocity is free on a boundary of this type: what stands outside enters through the flux alone.
+  bool open(int boundary) const {
+    return type(boundary) >= BoundaryType::pressure || (compressible_ && type(boundary) == BoundaryType::mass_flow);
+  }
+  /// What the user gave for a boundary, at a point.
+  double given_pressure(int b, const Vec3& x, double t) const { return (*conditions_[b].pressure)(x, t); }
+  Vec3 given_velocity(int b, const Vec3& x, double t) const { return (*conditions_[b].velocity)(x, t); }
+  double given_mass_flow(int b, double t) const { return (*conditions_[b].mass_flow)(Vec3::Zero(), t); }
   /// True when no boundary fixes the pressure: it is then determined up to a constant.
   bool closed() const { return closed_; }
   const std::vector<FacetRule>& facets() const { return facets_; }
@@ -102,6 +122,7 @@ class BoundaryConditions {
   void add_flow(double time);
 
   const Mesh& mesh_;
+  bool compressible_ = false;
   double density_;
   std::vector<Condition> conditions_;
   std::vector<FacetRule> facets_;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/expression.hpp"
-#include "fluid/boundary/boundary_conditions.hpp"
+#include "fluid/boundary/temperature_boundaries.hpp"
 #include "fluid/fluid.hpp"
 #include "fluid/pressure_correction/bdf.hpp"
 #include "fluid/transport/scalar_transport.hpp"
@@ -67,14 +67,6 @@ class EnergyEquation {
   void add_state(std::vector<Fluid::StateArray>& arrays);
 
  private:
-  struct Condition {
-    enum Kind { adiabatic, given, flux, heat_transfer } kind = adiabatic;
-    bool has_value = false;
-    std::unique_ptr<Expression> value, flux_density, coefficient;
-  };
-  void read_conditions(Options& options);
-  void find_fixed();
-
   const Mesh& mesh_;
   EnergyOptions options_;
   double density_;
@@ -82,10 +74,8 @@ class EnergyEquation {
   const BoundaryConditions& boundaries_;
   Expression source_;
   ScalarTransport transport_;
-  std::vector<Condition> conditions_;
-  std::vector<char> fixed_;          ///< [nodes] temperature given
-  std::vector<int> fixed_boundary_;  ///< [nodes] by which boundary, -1: none
-  std::vector<double> mass_;         ///< [nodes] m3, lumped
+  TemperatureBoundaries conditions_;
+  std::vector<double> mass_;  ///< [nodes] m3, lumped
 
   std::vector<double> temperature_, old_temperature_, next_, change_;
   std::vector<double> void_fraction_, old_void_fraction_, next_void_fraction_;  ///< of steps n, n-1, n+1

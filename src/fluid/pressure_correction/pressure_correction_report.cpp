@@ -51,6 +51,7 @@ Vec3 PressureCorrection::boundary_reactions(std::vector<BoundaryFlow>& flows) co
   Vec3 convected = Vec3::Zero();
   for (int b = 0; b < boundaries; ++b) {
     flows[b].volume_flow = at(b)[0] + boundaries_.boundary_flow()[b];
+    flows[b].mass_flow = density_ * flows[b].volume_flow;
     flows[b].mean_pressure = at(b)[1] / boundaries_.area(b);
     flows[b].force = vec3(at(b) + 2);
     if (energy_) flows[b].heat_flow = energy_->heat_flow()[b];
