@@ -12,7 +12,7 @@ namespace silt {
 /// The options `-mesh_...`: a box or a Gmsh file.
 struct MeshOptions {
   std::string type = "box";
-  std::string file;
+  InputFile file;
   std::string cell = "hexahedron";
   Vec3 lower = Vec3::Zero(), upper = Vec3::Ones();
   std::vector<int> cells = {8, 8, 8};

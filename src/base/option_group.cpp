@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "base/error.hpp"
 #include "base/options.hpp"
@@ -106,6 +107,15 @@ void OptionGroup::operator()(const char* name, bool& value, const char* help) {
 
 void OptionGroup::operator()(const char* name, std::string& value, const char* help) {
   if (auto text = take(name, "text", "", value, "", help)) value = *text;
+}
+
+void OptionGroup::operator()(const char* name, InputFile& value, const char* help) {
+  auto text = take(name, "text", "", value, "", help);
+  if (!text) return;
+  value = *text;
+  const std::string origin = options_.origin(full(name));  // file.yaml:12
+  const std::filesystem::path given = *text, beside = std::filesystem::path(origin).parent_path() / given;
+  if (!std::filesystem::exists(given) && std::filesystem::exists(beside)) value = beside.string();
 }
 
 void OptionGroup::operator()(const char* name, std::string& value, const std::vector<std::string>& allowed,

@@ -37,6 +37,14 @@ struct OptionEntry {
   bool given = false;    ///< the user gave it
 };
 
+/// Name of a file to be read. One that is not there seen from the working directory is looked for beside the options
+/// file that names it.
+class InputFile : public std::string {
+ public:
+  using std::string::string;
+  using std::string::operator=;
+};
+
 class OptionGroup;
 
 /// The options of a run: what the user gave (files, then command line; later wins), and what was declared of them.
@@ -101,6 +109,7 @@ class OptionGroup {
   void operator()(const char* name, bool& value, const char* help);
   /// Free text: names, files, expressions.
   void operator()(const char* name, std::string& value, const char* help);
+  void operator()(const char* name, InputFile& value, const char* help);
   /// One of a list of words.
   void operator()(const char* name, std::string& value, const std::vector<std::string>& allowed, const char* help);
   void operator()(const char* name, Vec3& value, const char* unit, const char* help);

@@ -143,6 +143,23 @@ TEST_CASE("An options file may build on another one, which it overrides") {
   CHECK_THROWS_AS(Options::from_arguments({"options_loop.yaml"}), UserError);
 }
 
+TEST_CASE("A file that is not in the working directory is looked for beside the options file that names it") {
+  const ScratchFolder scratch;
+  struct Source {
+    InputFile file;
+    void options(OptionGroup& option) { option("file", file, "a file"); }
+  } source;
+  std::filesystem::create_directory("cases");
+  std::ofstream("cases/case.yaml") << "mesh: {file: channel.msh}\n";
+  std::ofstream("cases/channel.msh") << "there\n";
+  Options options = Options::from_arguments({"cases/case.yaml"});
+  options.read("mesh", source);
+  CHECK(source.file == "cases/channel.msh");
+  std::ofstream("channel.msh") << "here\n";
+  options.read("mesh", source);
+  CHECK(source.file == "channel.msh");
+}
+
 TEST_CASE("An option of a feature that is off is let through when the catalogue knows it") {
   Options catalogue, options;
   catalogue.declare({"boundary_<name>_type", "word", "", "", "", "", "", false});

@@ -9,7 +9,8 @@ namespace silt {
 
 /// The options `-insertion_<name>_...`: one set of particles, present at the start or added during the run.
 struct InsertionOptions {
-  std::string type = "fill", material, file;
+  std::string type = "fill", material;
+  InputFile file;
   std::optional<double> diameter;
   std::string diameter_distribution = "mono", share_by = "number";
   std::vector<double> diameters, diameter_shares, material_shares;
