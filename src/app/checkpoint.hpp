@@ -5,6 +5,7 @@
 #include "app/balance.hpp"
 #include "app/moment.hpp"
 #include "base/checkpoint_file.hpp"
+#include "base/options.hpp"
 #include "base/output_directory.hpp"
 #include "coupling/coupling.hpp"
 
@@ -18,7 +19,7 @@ struct CheckpointOptions {
 
 /// `-restart`.
 struct RestartOptions {
-  std::string file;
+  InputFile file;
   void options(OptionGroup& option);
 };
 
