@@ -79,7 +79,7 @@ TEST_CASE("the pressure drop is that from where fluid is given to where pressure
   const auto drop = [&](std::vector<std::pair<std::string, std::string>> types) {
     Options options;
     for (const auto& [name, type] : types) options.set("boundary_" + name + "_type", type);
-    Diagnostics diagnostics(mesh, options, Vec3(0, 0, -9.81), &fluid, false);
+    Diagnostics diagnostics(mesh, options, Vec3(0, 0, -9.81), &fluid, nullptr);
     diagnostics.start(directory);
     Quantities quantities;
     diagnostics.sample(moment_of(fluid), quantities);
@@ -98,7 +98,7 @@ TEST_CASE("integrals of the fluid are those of its fields", "[app][mpi]") {
     TemporaryDirectory folder;
     const OutputDirectory directory = made(folder);
     Options options;
-    Diagnostics diagnostics(mesh, options, Vec3(0, 0, -9.81), &fluid, false);
+    Diagnostics diagnostics(mesh, options, Vec3(0, 0, -9.81), &fluid, nullptr);
     diagnostics.start(directory);
     Quantities q;
     diagnostics.sample(moment_of(fluid), q);
