@@ -67,6 +67,10 @@ Options everything() {
   declare(options, "tangential", TangentialModels{}, "tangential contact force");
   declare(options, "rolling", RollingModels{}, "rolling resistance");
   declare(options, "twisting", TwistingModels{}, "twisting resistance");
+  declare(options, "adhesion", AdhesionModels{}, "adhesion of surfaces in contact");
+  declare(options, "dlvo", DlvoModels{}, "forces between surfaces in a liquid");
+  declare(options, "bridge", BridgeModels{}, "liquid bridges");
+  declare(options, "interfacial", InterfacialModels{}, "attraction at a fluid interface");
   declare<ParticleOptions>(options, "particles");
   declare<BrownianOptions>(options, "brownian");
   declare(options, "magnetic", MagneticModels{}, "magnetic moment of the particles");
@@ -109,6 +113,10 @@ void each_model(Act&& act) {
   each_of("tangential", TangentialModels{}, act);
   each_of("rolling", RollingModels{}, act);
   each_of("twisting", TwistingModels{}, act);
+  each_of("adhesion", AdhesionModels{}, act);
+  each_of("dlvo", DlvoModels{}, act);
+  each_of("bridge", BridgeModels{}, act);
+  each_of("interfacial", InterfacialModels{}, act);
   each_of("drag", DragModels{}, act);
   each_of("saffman", SaffmanModels{}, act);
   each_of("magnus", MagnusModels{}, act);

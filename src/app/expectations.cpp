@@ -65,9 +65,10 @@ std::string quoted(std::string text) {
 }  // namespace
 
 void ExpectationOptions::options(OptionGroup& option) {
-  option("quantity", quantity,
-         "what is compared: a column of diagnostics.csv, <boundary>.<column>, <probe>.<column>, "
-         "<line>.<column> or <profile>.<column>");
+  option(
+      "quantity", quantity,
+      "what is compared: a column of diagnostics.csv, <boundary>.<column>, <probe>.<column>, particle.<id>.<column>, "
+      "<line>.<column> or <profile>.<column>");
   option("value", value, "", "figure expected, in the quantity's unit times the factor");
   option("values", values, "", "figures expected at the points of a line or profile");
   option("tolerance", tolerance, "", "largest error allowed", non_negative);

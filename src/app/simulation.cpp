@@ -99,6 +99,11 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
   for (const auto& column : walls_->columns()) through_time.push_back(column);
   for (const auto& column : probes_->columns()) through_time.push_back(column);
   for (const auto& column : profiles_->columns()) along_lines.push_back(column);
+  std::vector<std::string> asked;
+  for (const auto& name : options.names("expect", Options::declared<ExpectationOptions>()))
+    if (const auto quantity = options.find("expect_" + name + "_quantity")) asked.push_back(*quantity);
+  tracked_ = std::make_unique<TrackedParticles>(grains ? asked : std::vector<std::string>{});
+  for (const auto& name : tracked_->names()) through_time.push_back(name);
   expectations_ = std::make_unique<Expectations>(options, through_time, along_lines);
   progress_ = std::make_unique<Progress>(options);
   if (time_options_.least_step == 0) time_options_.least_step = 1e-3 * time_options_.step;
@@ -121,6 +126,10 @@ std::string Simulation::description() const {
   if (particles_)
     lines.push_back(fmt::format("particles  {}; step {:.3g} s ({})", particles_->total(), particles_->time_step(),
                                 particles_->time_step_reason()));
+  if (particles_) {
+    for (const auto& notice : particles_->notices()) lines.push_back("laws       " + notice);
+    for (const auto& warning : particles_->warnings()) lines.push_back("warning    " + warning);
+  }
   if (coupling_) lines.push_back(fmt::format("coupling   {}", coupling_->description()));
   lines.push_back(
       fmt::format("time       to {:g} s, step {:g} s{}; output {}", time_options_.end, time_options_.step,
@@ -313,6 +322,7 @@ void Simulation::report() {
   profiles_->sample(now_);
   departures_.record(now_);
   walls_->sample(now_, quantities);
+  tracked_->sample(now_, quantities);
   expectations_->sample(now_.time, quantities);
   if (output_->due(now_.time) || now_.time >= time_options_.end * (1 - 1e-12)) {
     output_->write(now_);

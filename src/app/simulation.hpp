@@ -15,6 +15,7 @@
 #include "app/probes.hpp"
 #include "app/profiles.hpp"
 #include "app/progress.hpp"
+#include "app/tracked_particles.hpp"
 #include "app/wall_table.hpp"
 #include "base/mesh.hpp"
 #include "base/options.hpp"
@@ -97,6 +98,7 @@ class Simulation {
   Departures departures_;
   std::unique_ptr<WallTable> walls_;
   std::unique_ptr<Expectations> expectations_;
+  std::unique_ptr<TrackedParticles> tracked_;
   std::unique_ptr<Progress> progress_;
 
   std::unique_ptr<Checkpoint> checkpoint_;

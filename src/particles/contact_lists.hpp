@@ -35,6 +35,7 @@ class ContactLists {
   int candidates() const { return candidates_; }
   const int* contact_i() const { return contact_i_.data(); }
   const int* contact_j() const { return contact_j_.data(); }
+  double& history(int component, int contact) { return history_[component * stride_ + contact]; }
   double history(int component, int contact) const { return history_[component * stride_ + contact]; }
   int components() const { return components_; }
 

@@ -34,6 +34,7 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
       wall_contacts(0),
       options_(read<ParticleOptions>(options, "particles")),
       laws_(options, materials),
+      liquid_(laws_, store.columns),
       walls_(on_mesh, options, names_of(materials)),
       streams_(walls_, options, materials, names_of(materials)),
       migration_(on_mesh, communicator_),
@@ -47,7 +48,7 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
       fields_(make_force_fields(options, on_mesh, store.columns, options_.instructions)),
       heat_(ParticleHeat::create(options, materials, store.columns)) {
   contacts = ContactLists(laws_.history_components());
-  wall_contacts = WallContacts(laws_.history_components());
+  wall_contacts = WallContacts(laws_.history_components(), liquid_.active());
   if (plane_) gravity_[2] = 0;
   for (int d = 0; d < 3; ++d)
     if (mesh.periodic[d]) {
@@ -128,6 +129,7 @@ void Engine::add(const std::vector<Seed>& seeds) {
     fastest = std::max(fastest, vec3(store.motion[p].velocity).norm());
   }
   MPI_Allreduce(MPI_IN_PLACE, smallest_.radius.data(), materials.count(), MPI_DOUBLE, MPI_MIN, communicator_);
+  take_sizes();
   const double fall = std::sqrt(2 * gravity_.norm() * (mesh.upper - mesh.lower).norm());
   if (brownian_.active())
     for (int m = 0; m < materials.count(); ++m)
@@ -145,13 +147,13 @@ void Engine::add(const std::vector<Seed>& seeds) {
                      bounds);
 
   skin_ = options_.skin > 0 ? options_.skin : 0.2 * largest_radius_;
-  const double reach = 2 * largest_radius_ + skin_;
+  const double reach = 2 * largest_radius_ + laws_.setup().leave_gap + skin_;
   for (int d = 0; d < 3; ++d)
     if (mesh.periodic[d] && periods_.length[d] < 2 * reach)
       throw UserError(
-          fmt::format("the periodic length {:g} m is too short for particles of diameter {:g} m: two of them "
-                      "would touch twice; allowed: at least {:g} m",
-                      periods_.length[d], 2 * largest_radius_, 2 * reach));
+          fmt::format("the periodic length {:g} m is too short for particles of diameter {:g} m that act over a "
+                      "gap of {:g} m: two of them would meet twice; allowed: at least {:g} m",
+                      periods_.length[d], 2 * largest_radius_, laws_.setup().leave_gap, 2 * reach));
   started_ = false;
 }
 
@@ -171,6 +173,7 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   const long long gone_everywhere = mpi_sum(static_cast<long long>(gone.size()));
   if (gone_everywhere > 0) {
     depart(gone, within_step, h);
+    liquid_.forget(store, memory_, gone, communicator_);
     removed += gone_everywhere;
     total -= gone_everywhere;
   }
@@ -193,22 +196,16 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   halo_.build(store, periods_, reach);
   store.reserve(store.all());
   store.place_dummies();
-  find_pairs(grid, store, periods_, gap + skin_, gap, memory_, contacts);
+  // A wet pair that has just passed the gap gives its liquid back before it is forgotten.
+  find_pairs(grid, store, periods_, gap + skin_, liquid_.active() ? gap + skin_ : gap, memory_, contacts);
   contacts.pad(store.dummy());
   wall_contacts.restore(wall_memory_);
   detached_ = false;
-  walls_.list(store.motion.data(), store.owned, skin_);
+  walls_.list(store.motion.data(), store.owned, skin_, gap);
   for (int p = 0; p < store.owned; ++p)
     for (int d = 0; d < 3; ++d) store.origin[p].entry[d] = store.motion[p].position[d];
   if (fluid_ && within_step) prepare_fluid(h);
   sum_up();
-}
-
-void Engine::detach() {
-  contacts.gather(store, memory_);
-  wall_contacts.gather(store.owned, wall_memory_);
-  contacts.clear();
-  detached_ = true;
 }
 
 void Engine::sum_up() {
@@ -237,9 +234,14 @@ void Engine::evaluate(double time, double dt) {
   CandidateSweep search;
   search.motion = store.motion.data();
   search.periods = periods_;
+  search.enter_gap = setup.enter_gap;
   contacts.fill(search);
   kernels_.candidates(search);
   contacts.enter(search.entering, search.entering_count, store.dummy());
+
+  walls_.points(store.motion.data(), time, wall_contacts.next());
+  wall_contacts.adopt();
+  liquid_.exchange(store, contacts, wall_contacts, periods_);
 
   PairSweep sweep;
   sweep.motion = store.motion.data();
@@ -254,8 +256,6 @@ void Engine::evaluate(double time, double dt) {
   if (sweep.too_deep >= 0) trouble_ = describe_deepest(sweep.too_deep);
   contacts.leave(sweep.leaving, sweep.leaving_count, store.dummy());
 
-  walls_.points(store.motion.data(), time, wall_contacts.next());
-  wall_contacts.adopt();
   std::fill(wall_force_sum_.begin(), wall_force_sum_.end(), 0.0);
   std::fill(wall_torque_sum_.begin(), wall_torque_sum_.end(), 0.0);
   WallSweep walls;

@@ -10,6 +10,7 @@
 #include "particles/halo.hpp"
 #include "particles/heat/particle_heat.hpp"
 #include "particles/insertion/streams.hpp"
+#include "particles/liquid_exchange.hpp"
 #include "particles/materials.hpp"
 #include "particles/migration.hpp"
 #include "particles/neighbours.hpp"
@@ -67,6 +68,9 @@ class Engine {
   /// Lets the particles fall without fluid until the options say they are at rest.
   void settle(const SettleOptions& options);
 
+  const ContactLaws& laws() const { return laws_; }
+  /// Liquid of this rank's films and of what they gave to bridges; after an advance. m3
+  double liquid_volume() const { return liquid_.volume(store, contacts, wall_contacts); }
   std::shared_ptr<const Particles::Snapshot> snapshot() const;
   void restore(const Particles::Snapshot& snapshot);
   void save(CheckpointWriter& to);
@@ -119,12 +123,15 @@ class Engine {
   /// Collective.
   void stop_if_any(const std::string& text) const;
   std::string describe_deepest(int contact) const;
+  /// Tells the laws the sizes of the particles. Collective.
+  void take_sizes();
   std::string find_bad() const;
   void largest_overlap(ParticleStep& step) const;
 
   ParticleOptions options_;
   OwnCommunicator communicator_;
   ContactLaws laws_;
+  LiquidExchange liquid_;
   Walls walls_;
   Streams streams_;
   std::vector<Departed> taken_out_;  ///< by removal boxes, since the last advance()

@@ -84,6 +84,11 @@ void Engine::save(CheckpointWriter& to) {
   std::vector<double> streams;
   if (mpi_rank() == 0) streams = as_numbers(streams_.states().data(), streams_.count());
   to.add("streams", sizeof(StreamState) / sizeof(double), streams);
+  std::vector<double> sizes;
+  if (mpi_rank() == 0)
+    for (int m = 0; m < materials.count(); ++m)
+      sizes.insert(sizes.end(), {laws_.sizes().smallest[m], laws_.sizes().largest[m]});
+  to.add("particle_sizes", 2, sizes);
   to.note("particle_step", limit.step);
   to.note("particle_step_reason", limit.reason);
   to.note("particles_total", static_cast<double>(total));
@@ -165,6 +170,11 @@ void Engine::load(const CheckpointReader& from, bool elsewhere) {
   std::vector<StreamState> stream_states(streams_.count());
   std::copy(stream_numbers.begin(), stream_numbers.end(), reinterpret_cast<double*>(stream_states.data()));
   streams_.set_states(stream_states);
+  const auto saved_sizes = from.numbers("particle_sizes");
+  ParticleSizes sizes(materials.count());
+  for (int m = 0; m < materials.count(); ++m)
+    sizes.smallest[m] = saved_sizes.at(2 * m), sizes.largest[m] = saved_sizes.at(2 * m + 1);
+  laws_.set_sizes(sizes);
   limit = {from.number("particle_step"), from.text("particle_step_reason")};
   total = static_cast<long long>(from.number("particles_total"));
   removed = static_cast<long long>(from.number("particles_removed"));

@@ -40,6 +40,18 @@ std::string Engine::describe_deepest(int contact) const {
                      describe(store.motion[j], store.id[j]));
 }
 
+void Engine::take_sizes() {
+  ParticleSizes sizes = laws_.sizes();  // of all there ever were, so that the reach does not shrink
+  for (int p = 0; p < store.owned; ++p) {
+    const int material = static_cast<int>(store.motion[p].material);
+    sizes.smallest[material] = std::min(sizes.smallest[material], store.motion[p].radius);
+    sizes.largest[material] = std::max(sizes.largest[material], store.motion[p].radius);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sizes.smallest.data(), materials.count(), MPI_DOUBLE, MPI_MIN, communicator_);
+  MPI_Allreduce(MPI_IN_PLACE, sizes.largest.data(), materials.count(), MPI_DOUBLE, MPI_MAX, communicator_);
+  laws_.set_sizes(sizes);
+}
+
 std::string Engine::find_bad() const {
   for (int p = 0; p < store.owned; ++p) {
     const Motion& motion = store.motion[p];
@@ -51,11 +63,10 @@ std::string Engine::find_bad() const {
 }
 
 void Engine::largest_overlap(ParticleStep& step) const {
-  long long touching = wall_contacts.count();
+  long long touching = 0;
   double largest = 0;
   for (int k = 0; k < contacts.contacts(); ++k) {
     const int i = contacts.contact_i()[k], j = contacts.contact_j()[k];
-    touching += i < store.owned;  // a pair across ranks is counted by the owner of its first particle
     const Motion &a = store.motion[i], &b = store.motion[j];
     double square = 0;
     for (int d = 0; d < 3; ++d) {
@@ -63,10 +74,16 @@ void Engine::largest_overlap(ParticleStep& step) const {
       distance -= periods_.length[d] * std::nearbyint(distance * periods_.inverse[d]);
       square += distance * distance;
     }
-    largest = std::max(largest, (a.radius + b.radius - std::sqrt(square)) / std::min(a.radius, b.radius));
+    const double overlap = a.radius + b.radius - std::sqrt(square);
+    // Pairs that act over a gap do not touch; a pair across ranks is counted by the owner of its first particle.
+    touching += i < store.owned && overlap > 0;
+    largest = std::max(largest, overlap / std::min(a.radius, b.radius));
   }
-  for (const WallPoint& point : wall_contacts.points())
-    largest = std::max(largest, 1 - point.distance / store.motion[point.particle].radius);
+  for (const WallPoint& point : wall_contacts.points()) {
+    const double share = 1 - point.distance / store.motion[point.particle].radius;
+    touching += share > 0;
+    largest = std::max(largest, share);
+  }
   step.contacts = mpi_sum(touching);
   step.largest_overlap = mpi_max(largest);
 }

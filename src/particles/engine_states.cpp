@@ -68,6 +68,13 @@ ParticleStep Engine::hold(double time, double dt) {
   return result;
 }
 
+void Engine::detach() {
+  contacts.gather(store, memory_);
+  wall_contacts.gather(store.owned, wall_memory_);
+  contacts.clear();
+  detached_ = true;
+}
+
 std::shared_ptr<const Particles::Snapshot> Engine::snapshot() const {
   ContactMemory memory = memory_;
   ParticleRows wall_memory = wall_memory_;

@@ -22,6 +22,7 @@ struct alignas(64) Block {
   double radius[block_size], distance[block_size], rolling_inertia[block_size];  ///< extended
   double normal_force[block_size], damping[block_size], contact_radius[block_size], stiffness[block_size];
   double pull_off[block_size] = {};  ///< stays 0 without adhesion
+  double pull[block_size];           ///< N, normal force besides normal_force; cohesive laws only
   double force[3][block_size], torque[3][block_size];
 };
 
@@ -159,6 +160,70 @@ void twisting_stage(Block& block, const StageCall& call) {
   }
 }
 
+template <class Model, bool several>
+void adhesion_stage(Block& block, const StageCall& call) {
+  using Constants = typename Model::template Constants<Pack>;
+  using History = typename Model::template History<Pack>;
+  for (int o = 0; o < call.count; o += lanes) {
+    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
+    History history = history_at<History>(call.history, o);
+    NormalLoad<Pack> normal = normal_load_at(block, o);
+    Pack pull;
+    Model::template adhere<Pack>(contact_at(block, o), constants, history, normal, pull);
+    keep_history(history, call.history, o);
+    store(&block.normal_force[o], normal.force);
+    store(&block.contact_radius[o], normal.contact_radius);
+    store(&block.stiffness[o], normal.stiffness);
+    store(&block.pull_off[o], normal.pull_off);
+    store(&block.pull[o], pull);
+  }
+}
+
+/// A force along the line of centres that does not press the surfaces together.
+template <class Model, bool several>
+void pull_stage(Block& block, const StageCall& call) {
+  using Constants = typename Model::template Constants<Pack>;
+  for (int o = 0; o < call.count; o += lanes) {
+    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
+    store(&block.pull[o], load(&block.pull[o]) + Model::template force<Pack>(contact_at(block, o), constants));
+  }
+}
+
+/// The same for a law that reads the history, which others keep.
+template <class Model, bool several>
+void bridge_stage(Block& block, const StageCall& call) {
+  using Constants = typename Model::template Constants<Pack>;
+  using History = typename Model::template History<Pack>;
+  for (int o = 0; o < call.count; o += lanes) {
+    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
+    const History history = history_at<History>(call.history, o);
+    store(&block.pull[o], load(&block.pull[o]) + Model::template force<Pack>(contact_at(block, o), constants, history));
+  }
+}
+
+/// Surfaces that do not touch rub no friction: their normal force is a pull, and the memory of the slip is dropped.
+inline void separate_stage(Block& block, const StageCall& call) {
+  const Pack zero(0.0);
+  const int first = call.laws->tangential.first_history, last = call.laws->history_components;
+  for (int o = 0; o < call.count; o += lanes) {
+    const Mask touches = load(&block.contact_radius[o]) > zero;
+    const Pack force = load(&block.normal_force[o]);
+    store(&block.pull[o], load(&block.pull[o]) + select(touches, zero, force));
+    store(&block.normal_force[o], select(touches, force, zero));
+    store(&block.damping[o], select(touches, load(&block.damping[o]), zero));
+    for (int c = first; c < last; ++c) {
+      double* entry = call.history.first + c * call.history.stride + o;
+      store(entry, select(touches, load(entry), zero));
+    }
+  }
+}
+
+inline void add_pull_stage(Block& block, const StageCall& call) {
+  for (int o = 0; o < call.count; o += lanes)
+    for (int d = 0; d < 3; ++d)
+      store(&block.force[d][o], load(&block.force[d][o]) + load(&block.pull[o]) * load(&block.normal[d][o]));
+}
+
 /// The stage functions of a list of models, by place in the list.
 #define SILT_STAGE_OF(kind)                                                         \
   template <bool several, class... Model>                                           \
@@ -167,6 +232,9 @@ void twisting_stage(Block& block, const StageCall& call) {
     return functions[model];                                                        \
   }
 SILT_STAGE_OF(normal)
+SILT_STAGE_OF(adhesion)
+SILT_STAGE_OF(pull)
+SILT_STAGE_OF(bridge)
 SILT_STAGE_OF(tangential)
 SILT_STAGE_OF(rolling)
 SILT_STAGE_OF(twisting)
@@ -193,8 +261,22 @@ class Laws {
   template <bool several>
   SILT_INLINE void choose(const LawSetup& setup) {
     add(normal_function<several>(static_cast<const NormalModels*>(nullptr), setup.normal.model), setup.normal);
+    if (setup.cohesive) {
+      // The adhesion sets the pull, be it none; the others add to it.
+      add(adhesion_function<several>(static_cast<const AdhesionModels*>(nullptr), setup.adhesion.model),
+          setup.adhesion);
+      if (setup.dlvo.model > 0)
+        add(pull_function<several>(static_cast<const DlvoModels*>(nullptr), setup.dlvo.model), setup.dlvo);
+      if (setup.bridge.model > 0)
+        add(bridge_function<several>(static_cast<const BridgeModels*>(nullptr), setup.bridge.model), setup.bridge);
+      if (setup.interfacial.model > 0)
+        add(pull_function<several>(static_cast<const InterfacialModels*>(nullptr), setup.interfacial.model),
+            setup.interfacial);
+      add(separate_stage, whole_);
+    }
     add(tangential_function<several>(static_cast<const TangentialModels*>(nullptr), setup.tangential.model),
         setup.tangential);
+    if (setup.cohesive) add(add_pull_stage, whole_);
     if (!setup.extended) return;
     // The first of the two writes the torque, be it none.
     add(rolling_function<several>(static_cast<const RollingModels*>(nullptr), setup.rolling.model), setup.rolling);
@@ -204,6 +286,7 @@ class Laws {
   }
 
   const LawSetup& setup_;
+  LawStage whole_;  ///< for stages that see the whole history
   StageFunction function_[12];
   const LawStage* stage_[12];
   int count_ = 0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.hpp"
 
@@ -20,6 +21,10 @@ PairProperties mean_of(const Material& a, const Material& b) {
   pair.friction = 0.5 * (a.friction + b.friction);
   pair.rolling_friction = 0.5 * (a.rolling_friction + b.rolling_friction);
   pair.yield_pressure = std::min(a.yield_pressure.value_or(infinity), b.yield_pressure.value_or(infinity));
+  pair.surface_energy = std::sqrt(a.surface_energy * b.surface_energy);
+  pair.hamaker = std::sqrt(a.hamaker * b.hamaker);
+  pair.potential_product = a.surface_potential * b.surface_potential;
+  pair.potential_squares = a.surface_potential * a.surface_potential + b.surface_potential * b.surface_potential;
   return pair;
 }
 
@@ -59,6 +64,8 @@ Materials::Materials(Options& options) {
       if (given.friction) pairs_[k].friction = *given.friction;
       if (given.rolling_friction) pairs_[k].rolling_friction = *given.rolling_friction;
       if (given.yield_pressure) pairs_[k].yield_pressure = *given.yield_pressure;
+      if (given.surface_energy) pairs_[k].surface_energy = *given.surface_energy;
+      if (given.hamaker) pairs_[k].hamaker = *given.hamaker;
     }
   }
 }

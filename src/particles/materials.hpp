@@ -15,6 +15,7 @@ struct Material {
   double restitution = 0.9, friction = 0.3, rolling_friction = 0;
   std::optional<double> yield_pressure;
   std::optional<double> heat_capacity, conductivity;
+  double surface_energy = 0, hamaker = 0, surface_potential = 0;
   void options(OptionGroup& option) {
     option("density", density, "kg/m3", "density of the material; has no default", positive);
     option("young_modulus", young_modulus, "Pa", "Young's modulus E", positive);
@@ -27,17 +28,23 @@ struct Material {
     option("heat_capacity", heat_capacity, "J/(kg K)", "specific heat capacity, for particles with a temperature",
            positive);
     option("conductivity", conductivity, "W/(m K)", "heat conductivity, for heat through contacts", positive);
+    option("surface_energy", surface_energy, "J/m2", "surface energy g (adhesion); of a pair: the geometric mean",
+           non_negative);
+    option("hamaker", hamaker, "J", "Hamaker constant A (dlvo); of a pair: the geometric mean", non_negative);
+    option("surface_potential", surface_potential, "V", "potential psi0 of the surface (dlvo)");
   }
 };
 
 /// The options `-pair_<a>_<b>_...`: what overrides the mean of two materials.
 struct PairOverride {
-  std::optional<double> restitution, friction, rolling_friction, yield_pressure;
+  std::optional<double> restitution, friction, rolling_friction, yield_pressure, surface_energy, hamaker;
   void options(OptionGroup& option) {
     option("restitution", restitution, "-", "normal coefficient of restitution of this pair", Range{0, 1, true, false});
     option("friction", friction, "-", "Coulomb friction coefficient of this pair", non_negative);
     option("rolling_friction", rolling_friction, "-", "rolling friction coefficient of this pair", non_negative);
     option("yield_pressure", yield_pressure, "Pa", "contact pressure at yield of this pair", positive);
+    option("surface_energy", surface_energy, "J/m2", "g of this pair, half its work of adhesion", non_negative);
+    option("hamaker", hamaker, "J", "Hamaker constant of this pair");
   }
 };
 
@@ -47,7 +54,11 @@ struct PairProperties {
   double effective_shear;  ///< Pa, 1/G_eff = (2-s_i)/G_i + (2-s_j)/G_j (7.35)
   double poisson_ratio;    ///< mean
   double restitution, friction, rolling_friction;
-  double yield_pressure;  ///< Pa, the smaller; infinity where both are elastic
+  double yield_pressure;                                  ///< Pa, the smaller; infinity where both are elastic
+  double surface_energy;                                  ///< J/m2, half the work of adhesion
+  double hamaker;                                         ///< J
+  double potential_product, potential_squares;            ///< V2, psi_i psi_j and psi_i^2 + psi_j^2
+  double smallest_radius = infinity, largest_radius = 0;  ///< m, effective, of the particles of the run
 };
 
 /// All materials of the run and the properties of every pair of them.

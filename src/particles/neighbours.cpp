@@ -105,7 +105,7 @@ inline double image(double distance, double length, double inverse) {
 
 }  // namespace
 
-void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, double reach, double leave_gap,
+void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, double reach, double memory_gap,
                 const ContactMemory& memory, ContactLists& lists) {
   lists.clear();
   const Bins own(grid, store, 0, store.owned), ghosts(grid, store, store.owned, store.all());
@@ -114,7 +114,7 @@ void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods
   const auto remember = [&](int a, int b, double square) {
     const std::int64_t id_a = store.id[a], id_b = store.id[b];
     const int i = id_a < id_b ? a : b, j = id_a < id_b ? b : a;
-    const double touch = store.motion[a].radius + store.motion[b].radius + leave_gap;
+    const double touch = store.motion[a].radius + store.motion[b].radius + memory_gap;
     const double* history = nullptr;
     if (square < touch * touch) {
       const int p = i < store.owned ? i : j;

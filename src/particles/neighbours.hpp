@@ -40,8 +40,9 @@ class CellGrid {
 std::vector<int> order_along(const CellGrid& grid, const Store& store);
 
 /// Fills the lists with all pairs of an owned particle and a particle of higher local index (owned or ghost) nearer
-/// than R_i + R_j + reach, touching pairs with the history they had. Requires owned particles sorted along the grid.
-void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, double reach, double leave_gap,
+/// than R_i + R_j + reach; those with a history are contacts while their gap is below `memory_gap`. Requires owned
+/// particles sorted along the grid.
+void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, double reach, double memory_gap,
                 const ContactMemory& memory, ContactLists& lists);
 
 }  // namespace silt

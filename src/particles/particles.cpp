@@ -68,6 +68,8 @@ ParticleStep Particles::advance(double time, double dt) { return impl_->advance(
 const std::vector<Departed>& Particles::departed() const { return impl_->departed; }
 double Particles::time_step() const { return impl_->limit.step; }
 std::string Particles::time_step_reason() const { return impl_->limit.reason; }
+const std::vector<std::string>& Particles::notices() const { return impl_->laws().notices(); }
+const std::vector<std::string>& Particles::warnings() const { return impl_->laws().warnings(); }
 const Materials& Particles::materials() const { return impl_->materials; }
 
 Vec3 Particles::momentum() const {
@@ -96,6 +98,8 @@ double Particles::total_mass() const {
   for (int i = 0; i < owned(); ++i) sum += mass(i);
   return mpi_sum(sum);
 }
+
+double Particles::liquid_volume() const { return mpi_sum(impl_->liquid_volume()); }
 
 Particles::Impulses Particles::take_impulses() {
   Impulses& mine = impl_->impulses;

@@ -138,6 +138,9 @@ class Particles {
   double time_step() const;
   /// "Hertz contact time, 20 steps a contact": the bound that limits time_step().
   std::string time_step_reason() const;
+  /// What the laws say of themselves at the sizes of the run, and what the user should be warned of, a line each.
+  const std::vector<std::string>& notices() const;
+  const std::vector<std::string>& warnings() const;
 
   /// Global sums. Collective.
   Vec3 momentum() const;
@@ -146,6 +149,8 @@ class Particles {
   double kinetic_energy() const;
   double rotational_energy() const;
   double total_mass() const;
+  /// Liquid in the films of the particles and in bridges (`-bridge_type`). m3
+  double liquid_volume() const;
   /// N s given to the particles by gravity, walls, fluid and applied fields since the last call; momentum change =
   /// their sum. Collective.
   struct Impulses {

@@ -21,10 +21,13 @@ struct LawStage {
 
 /// The laws of all contacts of a run.
 struct LawSetup {
-  LawStage normal, tangential, rolling, twisting;
+  LawStage normal, adhesion, dlvo, bridge, interfacial, tangential, rolling, twisting;
   int materials = 1;
   bool extended = false;  ///< a law reads the extended fields of Contact
-  double leave_gap = 0;   ///< m, a contact ends when the surfaces are further apart than this
+  bool cohesive = false;  ///< a law acts beyond touching or pulls
+  int history_components = 0;
+  double enter_gap = 0;  ///< m, a pair is taken among the contacts when the surfaces are nearer than this
+  double leave_gap = 0;  ///< m, and leaves them when they are further apart than this
 };
 
 /// Touching pairs: indices, and the history as one array per component. Padded to whole packs with the dummy pair.

@@ -37,11 +37,16 @@ StepLimit limit_step(const ParticleOptions& options, const Materials& materials,
         radii = radius * other / (radius + other);
         distance = radius + other;
       }
-      const double duration = laws.duration(a, b, {share * mass, radii, distance, speed});
+      const Encounter encounter{share * mass, radii, distance, speed, radius};
+      const double duration = laws.duration(a, b, encounter);
       lower(options.step_fraction * duration,
             fmt::format("{:.3g} of the collision time {:.3g} s of {} with {}{}", options.step_fraction, duration,
                         material.name, materials[b].name,
                         laws.hertzian() ? fmt::format(" at {:.3g} m/s", speed) : std::string()));
+      for (const auto& [law, time] : laws.pull_durations(a, b, encounter))
+        lower(options.step_fraction * time,
+              fmt::format("{:.3g} of half an oscillation {:.3g} s by {} of {} with {}", options.step_fraction, time,
+                          law, material.name, materials[b].name));
     }
   }
   for (const StepBound& other : others)

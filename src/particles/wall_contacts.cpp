@@ -19,6 +19,7 @@ void WallContacts::resize(Aligned<double>& values, std::size_t& stride, int coun
 void WallContacts::adopt() {
   const int old_count = count(), new_count = static_cast<int>(next_.size());
   resize(next_history_, next_stride_, new_count);
+  if (keep_lost_) taken_.assign(old_count, 0);
   int first = 0;  // of the particle at hand among the old points
   for (int k = 0; k < new_count;) {
     const int particle = next_[k].particle;
@@ -39,9 +40,19 @@ void WallContacts::adopt() {
         if (cosine > closest) closest = cosine, best = o;
       }
       if (best >= 0) taken |= 1u << (best - first);
-      for (int c = 0; c < components_; ++c) next_history_[c * next_stride_ + n] = best >= 0 ? history(c)[best] : 0.0;
+      if (best >= 0 && keep_lost_) taken_[best] = 1;
+      for (int c = 0; c < components_; ++c) next_history_[c * next_stride_ + n] = best >= 0 ? history(c, best) : 0.0;
     }
     k = end;
+  }
+  if (keep_lost_) {
+    lost_.clear();
+    for (int o = 0; o < old_count; ++o) {
+      if (taken_[o]) continue;
+      Lost lost{points_[o].particle, std::vector<double>(components_)};
+      for (int c = 0; c < components_; ++c) lost.history[c] = history(c, o);
+      lost_.push_back(std::move(lost));
+    }
   }
   for (int c = 0; c < components_; ++c)
     for (int k = new_count; k < new_count + 8; ++k) next_history_[c * next_stride_ + k] = 0;
@@ -67,7 +78,7 @@ void WallContacts::gather(int particles, ParticleRows& rows) const {
     for (; k < count() && points_[k].particle == p; ++k, ++found) {
       entries.push_back(points_[k].boundary);
       entries.insert(entries.end(), points_[k].normal, points_[k].normal + 3);
-      for (int c = 0; c < components_; ++c) entries.push_back(history(c)[k]);
+      for (int c = 0; c < components_; ++c) entries.push_back(history(c, k));
     }
     rows.append(entries.data(), found);
   }
@@ -85,7 +96,7 @@ void WallContacts::restore(const ParticleRows& rows) {
       point.boundary = static_cast<int>(row[0]);
       for (int d = 0; d < 3; ++d) point.normal[d] = row[1 + d];
       points_.push_back(point);
-      for (int c = 0; c < components_; ++c) history(c)[k] = row[4 + c];
+      for (int c = 0; c < components_; ++c) history(c, k) = row[4 + c];
     }
 }
 

@@ -11,7 +11,8 @@ namespace silt {
 /// particle in the step before whose normal is nearest to its own, whichever wall that was on.
 class WallContacts {
  public:
-  explicit WallContacts(int components) : components_(components) {}
+  /// `keep_lost`: contacts that are no longer there are listed in lost().
+  explicit WallContacts(int components, bool keep_lost = false) : components_(components), keep_lost_(keep_lost) {}
 
   int count() const { return static_cast<int>(points_.size()); }
   const std::vector<WallPoint>& points() const { return points_; }
@@ -20,6 +21,14 @@ class WallContacts {
   /// Where the geometry writes the new points; adopt() then gives them their histories.
   std::vector<WallPoint>& next() { return next_; }
   void adopt();
+  /// A contact that ended with the last adopt(), and what it remembered.
+  struct Lost {
+    int particle;
+    std::vector<double> history;
+  };
+  const std::vector<Lost>& lost() const { return lost_; }
+  double& history(int component, int contact) { return history_[component * stride_ + contact]; }
+  double history(int component, int contact) const { return history_[component * stride_ + contact]; }
   void fill(WallSweep& sweep);
 
   /// {boundary, normal, history} of every contact, for `particles` owned particles; and back, in their new order.
@@ -27,11 +36,12 @@ class WallContacts {
   void restore(const ParticleRows& rows);
 
  private:
-  double* history(int component) { return history_.data() + component * stride_; }
-  const double* history(int component) const { return history_.data() + component * stride_; }
   void resize(Aligned<double>& values, std::size_t& stride, int count) const;
 
   int components_;
+  bool keep_lost_;
+  std::vector<Lost> lost_;
+  std::vector<char> taken_;  ///< of the old points
   std::vector<WallPoint> points_, next_;
   Aligned<double> history_, next_history_;  ///< [components][stride]
   std::size_t stride_ = 0, next_stride_ = 0;

@@ -6,10 +6,14 @@ import sys
 
 # Laws that must be there, by slot.
 LAWS = {
-    "normal": "linear lee_herrmann kuwabara_kono tsuji walton_braun thornton",
+    "normal": "lennard_jones langston linear lee_herrmann kuwabara_kono tsuji walton_braun thornton",
     "tangential": "viscous spring spring_dashpot mindlin walton_braun",
     "twisting": "none twisting",
     "rolling": "none spring viscous_coulomb constant epsd",
+    "adhesion": "none jkr dmt auto",
+    "dlvo": "none vdw electrostatic full",
+    "bridge": "none capillary",
+    "interfacial": "none nicolson",
     "drag": "stokes_cunningham schiller_naumann di_felice haider_levenspiel gidaspow ergun wen_yu beetstra koch_hill rong tang mazza",
     "saffman": "none saffman_mei",
     "magnus": "none rubinow_keller lun_liu",
@@ -19,7 +23,7 @@ LAWS = {
     "magnetic": "none saturated linear langevin permanent fixed",
 }
 # Slots whose laws must name the paper they come from, `none` apart.
-SOURCED = ("normal", "tangential", "twisting", "rolling", "drag", "saffman", "magnus", "viscous_torque", "thermophoresis", "nusselt", "magnetic")
+SOURCED = ("normal", "tangential", "twisting", "rolling", "adhesion", "dlvo", "bridge", "interfacial", "drag", "saffman", "magnus", "viscous_torque", "thermophoresis", "nusselt", "magnetic")
 
 
 def main():

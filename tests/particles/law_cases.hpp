@@ -17,6 +17,31 @@ inline std::vector<std::pair<std::string, std::string>> law_options(const std::s
       {"normal kuwabara_kono", {{"normal_relaxation_time", "1e-6"}}},
       {"normal walton_braun", {{"normal_stiffness", "1e4"}}},
       {"normal thornton", {{"material_bead_yield_pressure", "2e5"}}},
+      {"normal lennard_jones", {{"normal_energy", "1e-7"}, {"normal_damping_rate", "100"}}},
+      {"normal langston", {{"normal_gravity", "1e5"}}},
+      {"adhesion jkr", {{"material_bead_surface_energy", "0.5"}}},
+      {"adhesion dmt", {{"material_bead_surface_energy", "0.5"}}},
+      {"adhesion auto", {{"material_bead_surface_energy", "0.5"}}},
+      {"dlvo vdw", {{"material_bead_hamaker", "1e-9"}, {"dlvo_least_gap", "1e-6"}}},
+      {"dlvo electrostatic",
+       {{"material_bead_surface_potential", "1e3"}, {"dlvo_least_gap", "1e-6"}, {"dlvo_debye_length", "1e-5"}}},
+      {"dlvo full",
+       {{"material_bead_hamaker", "1e-9"},
+        {"material_bead_surface_potential", "1e3"},
+        {"dlvo_least_gap", "1e-6"},
+        {"dlvo_debye_length", "1e-5"}}},
+      {"bridge capillary",
+       {{"bridge_surface_tension", "0.07"},
+        {"bridge_contact_angle", "20"},
+        {"bridge_viscosity", "0.01"},
+        {"bridge_roughness", "1e-6"},
+        {"bridge_liquid_content", "0.01"}}},
+      {"interfacial nicolson",
+       {{"interfacial_surface_tension", "0.07"},
+        {"interfacial_contact_angle", "60"},
+        {"interfacial_filling_angle", "40"},
+        {"interfacial_density_difference", "1000"},
+        {"interfacial_cutoff", "5e-3"}}},
       {"tangential spring_dashpot", {{"tangential_stiffness", "3e3"}}},
       {"tangential spring", {{"tangential_stiffness", "3e3"}}},
       {"tangential viscous", {{"tangential_damping", "0.01"}}},
@@ -36,6 +61,10 @@ void each_law(Act&& act) {
   for (const auto& name : TangentialModels::names()) act("tangential", name);
   for (const auto& name : RollingModels::names()) act("rolling", name);
   for (const auto& name : TwistingModels::names()) act("twisting", name);
+  for (const auto& name : AdhesionModels::names()) act("adhesion", name);
+  for (const auto& name : DlvoModels::names()) act("dlvo", name);
+  for (const auto& name : BridgeModels::names()) act("bridge", name);
+  for (const auto& name : InterfacialModels::names()) act("interfacial", name);
 }
 
 /// The laws of a case with one material, `bead`, and what the case adds.
@@ -57,7 +86,14 @@ struct LawCase {
 
 /// The materials and laws of a case.
 struct LawRun {
-  explicit LawRun(LawCase setup) : materials(setup.options), laws(setup.options, materials) {}
+  /// With particles of all materials between two radii, if given.
+  explicit LawRun(LawCase setup, double smallest = 0, double largest = 0)
+      : materials(setup.options), laws(setup.options, materials) {
+    if (!(smallest > 0)) return;
+    ParticleSizes sizes(materials.count());
+    for (int m = 0; m < materials.count(); ++m) sizes.smallest[m] = smallest, sizes.largest[m] = largest;
+    laws.set_sizes(sizes);
+  }
   Materials materials;
   ContactLaws laws;
 };

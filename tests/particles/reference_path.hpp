@@ -36,6 +36,7 @@ void with_law(const Any& law, const LawStage& stage, const PairProperties& pair,
 struct Loads {
   Vec3 force, torque_i, torque_j;
   NormalLoad<double> normal;
+  double pull = 0;  ///< N, normal force that does not press the surfaces together
 };
 
 /// The laws in plain numbers on one contact: the formulas of the headers, without blocks, packs or lists.
@@ -49,6 +50,24 @@ inline Loads loads_of(const ContactLaws& laws, const Contact<double>& contact, c
     result.normal = std::decay_t<decltype(model)>::template load<double>(contact, c, memory);
     result.normal.pull_off = 0;
   });
+  if (setup.cohesive) {
+    with_law(laws.adhesion(), setup.adhesion, pair, history, [&](const auto& model, const auto& c, auto& memory) {
+      std::decay_t<decltype(model)>::template adhere<double>(contact, c, memory, result.normal, result.pull);
+    });
+    const auto add = [&](const auto& model, const auto& c, auto&) {
+      result.pull += std::decay_t<decltype(model)>::template force<double>(contact, c);
+    };
+    with_law(laws.dlvo(), setup.dlvo, pair, history, add);
+    with_law(laws.bridge(), setup.bridge, pair, history, [&](const auto& model, const auto& c, auto& memory) {
+      result.pull += std::decay_t<decltype(model)>::template force<double>(contact, c, memory);
+    });
+    with_law(laws.interfacial(), setup.interfacial, pair, history, add);
+    if (!(result.normal.contact_radius > 0)) {
+      result.pull += result.normal.force;
+      result.normal.force = result.normal.damping = 0;
+      for (int h = setup.tangential.first_history; h < setup.history_components; ++h) history[h] = 0;
+    }
+  }
   with_law(laws.tangential(), setup.tangential, pair, history, [&](const auto& model, const auto& c, auto& memory) {
     std::decay_t<decltype(model)>::template force<double>(contact, result.normal, c, dt, memory, tangent);
   });
@@ -59,7 +78,7 @@ inline Loads loads_of(const ContactLaws& laws, const Contact<double>& contact, c
     const double twist = std::decay_t<decltype(model)>::template torque<double>(contact, result.normal, c, dt, memory);
     for (int d = 0; d < 3; ++d) torque[d] += twist * contact.normal[d];
   });
-  result.force = result.normal.force * n + vec3(tangent);
+  result.force = (result.normal.force + result.pull) * n + vec3(tangent);
   result.torque_i = (-arm_i * n).cross(result.force) + vec3(torque);
   result.torque_j = (arm_j * n).cross(-result.force) - vec3(torque);
   return result;
@@ -89,11 +108,10 @@ inline Contact<double> contact_of(const Motion& a, const Motion& b, double& arm_
   return contact;
 }
 
-inline Loads one_contact(const ContactLaws& laws, const Materials& materials, const Motion& a, const Motion& b,
-                         double dt, double* history) {
+inline Loads one_contact(const ContactLaws& laws, const Motion& a, const Motion& b, double dt, double* history) {
   double arm_i, arm_j;
   const Contact<double> contact = contact_of(a, b, arm_i, arm_j);
-  const PairProperties& pair = materials.pair(static_cast<int>(a.material), static_cast<int>(b.material));
+  const PairProperties pair = laws.pair(static_cast<int>(a.material), static_cast<int>(b.material));
   return loads_of(laws, contact, pair, arm_i, arm_j, dt, history);
 }
 

@@ -24,7 +24,7 @@ void compare(const LawCase& setup, const char* instructions, bool several, unsig
     all.set("material_rock_density", "3000").set("material_rock_young_modulus", "3e8");
     all.set("pair_bead_rock_friction", "0.7");
   }
-  const LawRun run(all);
+  const LawRun run(all, 0.4e-3, 1.2e-3);
   constexpr int count = 203;  // not a multiple of the block or of any pack
   const int components = run.laws.history_components();
   Store store;
@@ -70,7 +70,7 @@ void compare(const LawCase& setup, const char* instructions, bool several, unsig
   std::vector<double> longest(components), drift(components);
   for (int k = 0; k < count; ++k) {
     const Motion &a = store.motion[2 * k], &b = store.motion[2 * k + 1];
-    const Loads expected = one_contact(run.laws, run.materials, a, b, sweep.dt, history[k].data());
+    const Loads expected = one_contact(run.laws, a, b, sweep.dt, history[k].data());
     const Load &on_i = store.present[2 * k], &on_j = store.present[2 * k + 1];
     largest = std::max({largest, expected.force.norm(), expected.torque_i.norm() / a.radius});
     difference = std::max(difference, (vec3(on_i.force) - expected.force).norm());
@@ -81,7 +81,7 @@ void compare(const LawCase& setup, const char* instructions, bool several, unsig
       longest[c] = std::max(longest[c], std::abs(history[k][c]));
       drift[c] = std::max(drift[c], std::abs(lists.history(c, k) - history[k][c]));
     }
-    apart += (vec3(a.position) - vec3(b.position)).norm() >= a.radius + b.radius;
+    apart += (vec3(a.position) - vec3(b.position)).norm() >= a.radius + b.radius + run.laws.setup().leave_gap;
   }
   CHECK(largest > 0);
   CHECK(std::isfinite(largest));
@@ -102,6 +102,21 @@ TEST_CASE("The blocks of packed contacts give the forces of each law taken one c
       }
     });
   }
+}
+
+TEST_CASE("Adhesions, double layers and friction share a contact as they do one at a time", "[particles]") {
+  const char* instructions = can_run("avx512") ? "avx512" : can_run("avx2") ? "avx2" : "plain";
+  unsigned seed = 3;
+  for (const auto& adhesion : AdhesionModels::names())
+    for (const auto& dlvo : DlvoModels::names())
+      for (const auto& rolling : RollingModels::names()) {
+        INFO(adhesion << " " << dlvo << " " << rolling);
+        LawCase setup;
+        setup.choose("adhesion", adhesion).choose("dlvo", dlvo).choose("rolling", rolling);
+        setup.choose("interfacial", seed % 2 ? "none" : "nicolson").choose("twisting", "twisting");
+        compare(setup, instructions, seed % 3 == 0, seed);
+        ++seed;
+      }
 }
 
 TEST_CASE("Any normal law goes with any tangential, rolling and twisting law in the blocks", "[particles]") {

@@ -18,6 +18,7 @@ struct Encounter {
   double radius;    ///< m, effective
   double distance;  ///< m, R_i + R_j, at a wall R_i
   double speed;     ///< m/s, of approach
+  double radius_i;  ///< m
 };
 
 }  // namespace silt

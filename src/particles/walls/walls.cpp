@@ -61,21 +61,22 @@ void Walls::localise(double reach) {
   local_ = FacetedWall(std::move(near), smooth_angle_);
 }
 
-void Walls::list(const Motion* particles, int count, double skin) {
+void Walls::list(const Motion* particles, int count, double skin, double gap) {
+  gap_ = gap;
   double largest = 0;
   for (int i = 0; i < count; ++i) largest = std::max(largest, particles[i].radius);
   // The centres stay within a skin of this rank's cells until the list is made anew.
-  if (const double reach = largest + 2 * skin; reach > reach_) localise(reach);
+  if (const double reach = largest + gap + 2 * skin; reach > reach_) localise(reach);
   near_.clear();
   items_.clear();
   for (auto& wall : rigid_) wall.mark();
   for (int i = 0; i < count; ++i) {
     const Vec3 centre = vec3(particles[i].position);
     int first = static_cast<int>(items_.size());
-    local_.near(centre, particles[i].radius + 0.5 * skin, items_);
+    local_.near(centre, particles[i].radius + gap + 0.5 * skin, items_);
     if (static_cast<int>(items_.size()) > first) near_.push_back({i, -1, 0, first, static_cast<int>(items_.size())});
     for (int w = 0; w < static_cast<int>(rigid_.size()); ++w) {
-      const double reach = particles[i].radius + (rigid_[w].motion().moves() ? 1.0 : 0.5) * skin;
+      const double reach = particles[i].radius + gap + (rigid_[w].motion().moves() ? 1.0 : 0.5) * skin;
       for (int s = 0; s < static_cast<int>(shifts_.size()); ++s) {
         first = static_cast<int>(items_.size());
         if (rigid_[w].repeats(shifts_[s]) && rigid_[w].near(centre, shifts_[s], reach, items_))
@@ -91,7 +92,7 @@ void Walls::points(const Motion* particles, double time, std::vector<WallPoint>&
   for (size_t n = 0; n < near_.size();) {
     const int i = near_[n].particle;
     const Vec3 centre = vec3(particles[i].position);
-    const double radius = particles[i].radius;
+    const double radius = particles[i].radius + gap_;
     const size_t first = points.size();
     int rigid = 0;
     for (; n < near_.size() && near_[n].particle == i; ++n) {

@@ -42,10 +42,11 @@ class Walls {
   const std::string& name(int wall) const { return names_[wall]; }
   const std::vector<RigidWall>& rigid() const { return rigid_; }
 
-  /// Remembers which of the particles may touch a wall before having moved `skin`/2, and moved() being below that too.
-  /// Local.
-  void list(const Motion* particles, int count, double skin);
-  /// The points of walls nearer than the radius to each particle, ordered by particle; replaces `points`. Local.
+  /// Remembers which of the particles may come within `gap` of a wall before having moved `skin`/2, and moved() being
+  /// below that too. Local.
+  void list(const Motion* particles, int count, double skin, double gap = 0);
+  /// The points of walls nearer to each particle than its radius and the gap of list(), ordered by particle; replaces
+  /// `points`. Local.
   void points(const Motion* particles, double time, std::vector<WallPoint>& points) const;
 
   /// Whether any wall is driven by the force on it.
@@ -83,6 +84,7 @@ class Walls {
   FacetedWall local_;
   Box home_;           ///< of this rank's cells
   double reach_ = -1;  ///< m, how far from home_ local_ holds
+  double gap_ = 0;     ///< m, how far from its surface a particle feels a wall
   std::vector<RigidWall> rigid_;
   std::vector<Vec3> shifts_;
   std::vector<Near> near_;
