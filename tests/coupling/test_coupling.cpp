@@ -5,7 +5,7 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "coupling/coupling.hpp"
+#include "coupled_case.hpp"
 
 using namespace silt;
 
@@ -13,37 +13,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A mesh, a fluid and particles from options, stepped together.
-struct Bed {
-  Options options;
-  Vec3 gravity = Vec3::Zero();
-  std::unique_ptr<Mesh> mesh;
-  std::unique_ptr<Fluid> fluid;
-  std::unique_ptr<Particles> particles;
-  std::unique_ptr<Coupling> coupling;
-  double time = 0;
-
-  Bed& set(const std::string& name, const std::string& value) {
-    options.set(name, value);
-    return *this;
-  }
-  void create(const std::vector<Seed>& seeds) {
-    MeshOptions mesh_options;
-    options.read("mesh", mesh_options);
-    mesh = std::make_unique<Mesh>(mesh_options);
-    fluid = Fluid::create(*mesh, options, gravity);
-    particles = std::make_unique<Particles>(*mesh, options, gravity);
-    particles->add(seeds);
-    coupling = std::make_unique<Coupling>(*mesh, *particles, *fluid, options, gravity);
-  }
-  void step(double dt) {
-    coupling->before_particles(dt);
-    particles->advance(time, dt);
-    coupling->before_fluid(dt);
-    fluid->advance(time, dt);
-    coupling->after_fluid(dt);
-    time += dt;
-  }
+/// A coupled case with what the tests ask of it.
+struct Bed : test::CoupledCase {
   /// Mean over the particles of all ranks.
   Vec3 mean_velocity() const { return particles->momentum() / particles->total_mass(); }
   double largest(std::span<const double> field, int components, int d) const {
