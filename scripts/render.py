@@ -16,9 +16,9 @@ def arguments():
     parser = argparse.ArgumentParser(prog="scripts/render")
     parser.add_argument("directory")
     parser.add_argument("picture", nargs="?")
-    parser.add_argument("-time", type=float)
-    parser.add_argument("-field")
-    parser.add_argument("-size", default="1600x1200")
+    parser.add_argument("-time", "--time", type=float)  # pvbatch hands on the second form
+    parser.add_argument("-field", "--field")
+    parser.add_argument("-size", "--size", default="1600x1200")
     given = parser.parse_args()
     given.picture = given.picture or os.path.join(given.directory, "render.png")
     given.size = [int(v) for v in given.size.split("x")]
