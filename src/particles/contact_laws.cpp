@@ -235,7 +235,7 @@ double ContactLaws::duration(int a, int b, const Encounter& encounter) const {
 
 std::vector<LawDuration> ContactLaws::pull_durations(int a, int b, const Encounter& encounter) const {
   std::vector<LawDuration> result;
-  const auto add = [&](const char* slot, const auto& any) {
+  const auto add = [&](const char* slot, const auto& acts) {
     std::visit(
         [&](const auto& model) {
           using Model = std::decay_t<decltype(model)>;

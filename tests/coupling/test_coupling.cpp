@@ -79,7 +79,7 @@ TEST_CASE(
   bed.set("fluid_density", "2")
       .set("fluid_viscosity", fmt::format("{:.15g}", mu))
       .set("fluid_initial_velocity", "0.1, 0.05, 0");
-  bed.set("drag_type", "stokes_cunningham").set("fluid_order", "1");
+  bed.set("drag_type", "stokes_cunningham");
   bed.create(lattice({8, 8, 8}, side / 8, d));
   const double solid = bed.particles->total_mass(), volume = 512 * pi / 6 * d * d * d,
                fluid = 2 * (side * side * side - volume);

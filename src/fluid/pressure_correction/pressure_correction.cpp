@@ -130,7 +130,7 @@ void PressureCorrection::prepare(double time, double dt, const Past& past) {
   }
   boundaries_.evaluate(time + dt, load_.void_fraction.data());
   bdf_dt_ = dt;
-  bdf_ = fluid_.order == 1 || past.steps == 0 ? Bdf::first(dt) : Bdf::second(dt, past.dt);
+  bdf_ = fluid_.order == 1 || past.steps < starting_steps ? Bdf::first(dt) : Bdf::second(dt, past.dt);
   for (int i = 0; i < 3 * n; ++i) {
     convecting_[i] = bdf_.e1 * velocity_[i] - bdf_.e2 * old_velocity_[i];
     history_[i] = bdf_.c1 * velocity_[i] - bdf_.c2 * old_velocity_[i];

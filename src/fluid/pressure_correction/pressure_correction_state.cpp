@@ -76,7 +76,7 @@ void PressureCorrection::accept(const Past& before, double dt, std::vector<doubl
   std::swap(old_drag_, drag_);
   drag_ = drag_now_;
   for (int i = 0; i < n; ++i) {
-    past_[4 * i] = std::min(before.steps + 1, 2);
+    past_[4 * i] = std::min(before.steps + 1, starting_steps);
     past_[4 * i + 1] = dt, past_[4 * i + 2] = bdf_.c0, past_[4 * i + 3] = before.rate;
   }
   renew_ = false;

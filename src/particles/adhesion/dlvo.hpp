@@ -91,8 +91,9 @@ struct ElectrostaticDlvo {
   /// 1/kappa = sqrt(eps k_B T/(2 e^2 N_A I)). m
   double length() const {
     if (debye_length) return *debye_length;
-    constexpr double boltzmann = 1.380649e-23, charge = 1.602176634e-19, avogadro = 6.02214076e23;
-    return std::sqrt(permittivity() * boltzmann * temperature / (2 * charge * charge * avogadro * *ionic_strength));
+    constexpr double boltzmann_constant = 1.380649e-23, charge = 1.602176634e-19, avogadro = 6.02214076e23;
+    return std::sqrt(permittivity() * boltzmann_constant * temperature /
+                     (2 * charge * charge * avogadro * *ionic_strength));
   }
 
   template <class Real>
