@@ -251,7 +251,7 @@ std::vector<LawDuration> ContactLaws::pull_durations(int a, int b, const Encount
             result.push_back(
                 {fmt::format("{} {}", slot, model.name), std::numbers::pi * std::sqrt(encounter.mass / stiffness)});
         },
-        any);
+        acts);
   };
   add("adhesion", adhesion_.model);
   add("dlvo", dlvo_.model);

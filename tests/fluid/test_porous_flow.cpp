@@ -88,9 +88,9 @@ TEST_CASE("The nodal pressure gradient is the adjoint of the momentum equation's
   const double dt = 0.05;
   std::vector<double> older(mesh.nodes, 0.0), old(older),
       now(flow.fluid->pressure().begin(), flow.fluid->pressure().end());
-  for (int step = 0; step < 3; ++step) {
-    // Factors of phi^n and phi^{n-1}: BDF1 then BDF2 with rates 1/dt, 1.5/dt.
-    const double c = step == 0 ? 0 : step == 1 ? 2 : 2 / 1.5, d = step == 2 ? 0.5 : 0;
+  for (int step = 0; step < 5; ++step) {
+    // Factors of phi^n and phi^{n-1}: three steps of BDF1 (rate 1/dt), then BDF2 (1.5/dt).
+    const double c = step == 0 ? 0 : step < 3 ? 1 : step == 3 ? 2 : 2 / 1.5, d = step < 3 ? 0 : 0.5;
     std::vector<double> effective(mesh.nodes);
     for (int i = 0; i < mesh.nodes; ++i) effective[i] = now[i] + c * (now[i] - old[i]) - d * (old[i] - older[i]);
     flow.advance(dt);
