@@ -369,10 +369,10 @@ std::array<Vec3, 4> Mesh::facet_corners(const BoundaryFacet& facet) const {
   return corners;
 }
 
-Vec3 Mesh::centre(int cell) const {
+Vec3 Mesh::centre(int local_cell) const {
   Vec3 sum = Vec3::Zero();
   for (int a = 0; a < nodes_per_cell; ++a)
-    sum += vec3(&cell_coordinates[3 * (static_cast<size_t>(cell) * nodes_per_cell + a)]);
+    sum += vec3(&cell_coordinates[3 * (static_cast<size_t>(local_cell) * nodes_per_cell + a)]);
   return sum / nodes_per_cell;
 }
 

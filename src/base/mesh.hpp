@@ -48,7 +48,7 @@ class Mesh {
   /// Creates, distributes (PTScotch) and checks the mesh; throws UserError for a bad file or option. Collective.
   Mesh(const MeshOptions& options, const Partition& partition = {});
   /// Mean of the corners of a local cell. m
-  Vec3 centre(int cell) const;
+  Vec3 centre(int local_cell) const;
 
   DM plex() const { return plex_; }
 
