@@ -12,7 +12,7 @@ TEST_CASE("Drag, lift and pressure difference of the cylinder of DFG 2D-1 agree 
   const std::string element = GENERATE("equal_order", "taylor_hood");
   MonolithicCase flow("triangle", {}, element);
   flow.mesh_options.type = "file";
-  flow.mesh_options.file = SILT_SOURCE_DIR "/inputs/verification/dfg_2d1.msh";
+  flow.mesh_options.file = SILT_SOURCE_DIR "/inputs/fluid/dfg_2d1.msh";
   flow.options.set("fluid_viscosity", "1e-3");
   flow.boundary("wall cylinder", "type", "no_slip");
   flow.boundary("inlet", "type", "velocity");
