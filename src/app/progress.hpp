@@ -37,7 +37,7 @@ class Progress {
   ProgressOptions options_;
   bool speaks_, terminal_, open_line_ = false;
   double from_ = 0, end_ = 0, shown_ = 0;
-  long long first_step_ = 0, shown_step_ = -1;
+  long long shown_step_ = -1;
   Clock::time_point start_;
 };
 

@@ -203,8 +203,7 @@ double CheckpointReader::number(const std::string& note) const {
 
 std::string CheckpointReader::text(const std::string& note) const {
   const Object file(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  const std::string text = file < 0 ? "" : text_of(file, note);
-  return text;
+  return file < 0 ? "" : text_of(file, note);
 }
 
 }  // namespace silt
