@@ -116,15 +116,11 @@ Place Locator::lowest_around(const double* x, const Place& place) const {
 }
 
 template <Cell kind>
-Place Locator::search(const double* point) const {
-  Place place;
-  if (mesh_.cells == 0) return place;
-  double x[3] = {point[0], point[1], point[2]};
-  if (periodic_) to_box(x, place.wrap);
+void Locator::search_bin(const double* x, Place& place) const {
   int index[3] = {0, 0, 0};
   for (int d = 0; d < mesh_.dimension; ++d) {
     const double along = (x[d] - bin_lower_[d]) * bin_inverse_[d];
-    if (!(along >= 0 && along <= bins_[d])) return place;
+    if (!(along >= 0 && along <= bins_[d])) return;
     index[d] = std::min(static_cast<int>(along), bins_[d] - 1);
   }
   const int bin = (index[2] * bins_[1] + index[1]) * bins_[0] + index[0];
@@ -136,9 +132,40 @@ Place Locator::search(const double* point) const {
     if (near && invert<kind>(c, x, place.xi.data()) && least_depth<kind>(place.xi.data()) >= -inside_tolerance) {
       place.state = Place::State::inside;
       place.cell = c;
-      return place;
+      return;
     }
   }
+}
+
+template <Cell kind>
+Place Locator::search(const double* point) const {
+  Place place;
+  if (mesh_.cells == 0) return place;
+  double x[3] = {point[0], point[1], point[2]};
+  if (periodic_) to_box(x, place.wrap);
+  search_bin<kind>(x, place);
+  if (!periodic_ || place.inside()) return place;
+  // A point on a periodic side ties with its image on the other one, which may be all that this rank has of it.
+  int sides[3] = {0, 0, 0};
+  for (int d = 0; d < mesh_.dimension; ++d) {
+    const double near = inside_tolerance * period_[d];
+    if (x[d] <= mesh_.lower[d] + near) sides[d] = 1;
+    if (x[d] >= mesh_.upper[d] - near) sides[d] = -1;
+    if (period_[d] == 0) sides[d] = 0;
+  }
+  const std::array<int, 3> wrap = place.wrap;
+  for (int image = 1; image < 8 && !place.inside(); ++image) {
+    bool there = true;
+    double moved[3];
+    for (int d = 0; d < 3; ++d) {
+      const bool shifted = image >> d & 1;
+      there = there && (!shifted || sides[d] != 0);
+      place.wrap[d] = wrap[d] + (shifted ? sides[d] : 0);
+      moved[d] = x[d] + (shifted ? sides[d] * period_[d] : 0.0);
+    }
+    if (there) search_bin<kind>(moved, place);
+  }
+  if (!place.inside()) place.wrap = wrap;
   return place;
 }
 
@@ -256,26 +283,26 @@ bool Locator::reference(int cell, const double* x, double* xi) const {
   return false;
 }
 
+Place Locator::held(const Vec3& x) const {
+  switch (mesh_.cell) {
+    case Cell::triangle:
+      return search<Cell::triangle>(x.data());
+    case Cell::quadrilateral:
+      return search<Cell::quadrilateral>(x.data());
+    case Cell::tetrahedron:
+      return search<Cell::tetrahedron>(x.data());
+    case Cell::hexahedron:
+      return search<Cell::hexahedron>(x.data());
+  }
+  return {};
+}
+
 std::vector<Place> Locator::claim(std::span<const Vec3> points) const {
   const int own = mpi_rank(), nobody = std::numeric_limits<int>::max();
   std::vector<Place> places(points.size());
   std::vector<int> rank(points.size(), nobody);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const double* x = points[k].data();
-    switch (mesh_.cell) {
-      case Cell::triangle:
-        places[k] = search<Cell::triangle>(x);
-        break;
-      case Cell::quadrilateral:
-        places[k] = search<Cell::quadrilateral>(x);
-        break;
-      case Cell::tetrahedron:
-        places[k] = search<Cell::tetrahedron>(x);
-        break;
-      case Cell::hexahedron:
-        places[k] = search<Cell::hexahedron>(x);
-        break;
-    }
+    places[k] = held(points[k]);
     if (places[k].inside()) rank[k] = own;
   }
   MPI_Allreduce(MPI_IN_PLACE, rank.data(), static_cast<int>(rank.size()), MPI_INT, MPI_MIN, PETSC_COMM_WORLD);

@@ -53,6 +53,10 @@ class Locator {
   /// point in the domain, `missing` on the others. For creating particles. Collective.
   std::vector<Place> claim(std::span<const Vec3> points) const;
 
+  /// The local cell that holds the point, as claim() sees it: `inside` also where a tie would go to a lower rank. For a
+  /// point that settle() sent here. Local.
+  Place held(const Vec3& x) const;
+
   /// Reference coordinates of x in a given cell, whether inside or not (no wrap). False when the map could not be
   /// inverted there.
   bool reference(int cell, const double* x, double* xi) const;
@@ -76,6 +80,8 @@ class Locator {
   Place walk(const double* x, int hint) const;
   template <Cell kind>
   Place search(const double* x) const;
+  template <Cell kind>
+  void search_bin(const double* x, Place& place) const;
   template <Cell kind>
   Place lowest_around(const double* x, const Place& place) const;
   template <Cell kind>

@@ -377,14 +377,14 @@ Vec3 Mesh::centre(int local_cell) const {
 }
 
 void Mesh::sum_shared(double* values, int components) const {
-  if (mpi_size() == 1) return;
+  if (mpi_size() == 1 || components == 0) return;
   SILT_PETSC(PetscSFReduceBegin(node_exchange_, doubles(components), values, values, MPI_SUM));
   SILT_PETSC(PetscSFReduceEnd(node_exchange_, doubles(components), values, values, MPI_SUM));
   copy_from_owner(values, components);
 }
 
 void Mesh::copy_from_owner(double* values, int components) const {
-  if (mpi_size() == 1) return;
+  if (mpi_size() == 1 || components == 0) return;
   SILT_PETSC(PetscSFBcastBegin(node_exchange_, doubles(components), values, values, MPI_REPLACE));
   SILT_PETSC(PetscSFBcastEnd(node_exchange_, doubles(components), values, values, MPI_REPLACE));
 }

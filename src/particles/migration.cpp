@@ -129,7 +129,8 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
           sizeof packet +
           sizeof(double) * (row.size() + static_cast<std::size_t>(packet.contact_rows) * contacts.width +
                             static_cast<std::size_t>(packet.wall_rows) * walls.width);
-      const Place place = locator_.find(packet.motion.position);
+      // What settle() said is final, also where a tie would send the particle on.
+      const Place place = settled ? locator_.held(vec3(packet.motion.position)) : locator_.find(packet.motion.position);
       if (place.inside()) {
         wrap(locator_, place, packet.motion);
         const int p = store.owned++;

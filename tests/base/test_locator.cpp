@@ -297,6 +297,56 @@ TEST_CASE("points that wander over the ranks are never lost nor held twice", "[m
   }
 }
 
+TEST_CASE("points on the sides of a periodic box have one holder, from wherever they come", "[mpi][locator]") {
+  for (const auto& cells : std::vector<std::vector<int>>{{3, 3}, {5, 4}, {3, 3, 3}, {5, 4, 3}}) {
+    const int dimension = static_cast<int>(cells.size());
+    Mesh mesh(box(dimension == 2 ? "quadrilateral" : "hexahedron", cells, std::vector<int>(dimension, 1)));
+    const Locator locator(mesh);
+    std::vector<Vec3> points;  // a lattice over the box and its images, every side, edge and corner among them
+    const int last = dimension == 2 ? 1 : 9;
+    for (int k = 0; k < last; ++k)
+      for (int j = 0; j < 9; ++j)
+        for (int i = 0; i < 9; ++i) {
+          Vec3 x(i, j, k);
+          for (int d = 0; d < dimension; ++d)
+            x[d] = mesh.lower[d] + (mesh.upper[d] - mesh.lower[d]) * (x[d] - 2) / 4 * (1 + 1e-16 * (i - 4));
+          x[2] = dimension == 2 ? 0 : x[2];
+          points.push_back(x);
+        }
+    const int count = static_cast<int>(points.size());
+    const auto claimed = locator.claim(points);
+    std::vector<int> holders(count);
+    int wrong = 0;
+    for (int k = 0; k < count; ++k) holders[k] = claimed[k].inside();
+    MPI_Allreduce(MPI_IN_PLACE, holders.data(), count, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+    for (const int h : holders) wrong += h != 1;
+
+    // Whoever has the point in a cell of its own, or looks for it anew, names a rank that holds it.
+    for (int k = 0; k < count; ++k) {
+      const Place here = locator.held(points[k]);
+      const int held = here.inside() ? mpi_rank() : 1 << 20;
+      for (const int hint : {-1, here.cell}) {
+        const Place place = locator.find(points[k], hint);
+        const int named = place.inside() ? mpi_rank() : place.state == Place::State::remote ? place.rank : -1;
+        wrong += place.state == Place::State::boundary;
+        std::vector<int> all(2 * static_cast<std::size_t>(mpi_size()));
+        const int mine[2] = {named, held};
+        MPI_Allgather(mine, 2, MPI_INT, all.data(), 2, MPI_INT, PETSC_COMM_WORLD);
+        for (int r = 0; r < mpi_size(); ++r)
+          if (all[2 * r] >= 0) wrong += all[2 * all[2 * r] + 1] != all[2 * r];
+        if (place.inside()) {
+          const Vec3 x = locator.wrapped(points[k], place);
+          double xi[3];
+          REQUIRE(locator.reference(place.cell, x.data(), xi));
+          for (int d = 0; d < dimension; ++d) wrong += xi[d] < -1e-9 || xi[d] > 1 + 1e-9;
+        }
+      }
+    }
+    INFO(cells[0] << " x " << cells[1] << " cells");
+    CHECK(wrong == 0);
+  }
+}
+
 TEST_CASE("a rank without cells finds nothing and takes part in every collective search", "[mpi][locator]") {
   Mesh mesh(box("quadrilateral", {1, 1}));
   const Locator locator(mesh);

@@ -242,3 +242,22 @@ TEST_CASE("Flow that the element holds exactly comes out exactly on any number o
   CHECK(u < 1e-7);
   CHECK(p < 1e-5);
 }
+
+TEST_CASE("A uniform flow in a box without boundaries goes on as it is, twice in one process", "[monolithic][mpi]") {
+  const std::string element = GENERATE("equal_order", "taylor_hood");
+  CAPTURE(element);
+  const auto flow = std::make_unique<MonolithicCase>("hexahedron", std::vector<int>{3, 4, 3}, element);
+  const auto twin = std::make_unique<MonolithicCase>("hexahedron", std::vector<int>{3, 4, 3}, element);
+  for (auto* box : {flow.get(), twin.get()}) {
+    box->mesh_options.periodic = {1, 1, 1};
+    box->options.set("fluid_initial_velocity", "0.3, -0.2, 0.1");
+    box->start();
+    REQUIRE(box->mesh->boundaries.empty());
+  }
+  for (auto* box : {twin.get(), flow.get()}) {
+    const FluidStep step = box->fluid->advance(0, 0.1);
+    CHECK((step.momentum - Vec3(0.3, -0.2, 0.1)).norm() < 1e-10);
+    for (int i = 0; i < box->mesh->nodes; ++i)
+      CHECK((vec3(&box->fluid->velocity()[3 * static_cast<size_t>(i)]) - Vec3(0.3, -0.2, 0.1)).norm() < 1e-9);
+  }
+}

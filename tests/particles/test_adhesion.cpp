@@ -189,7 +189,7 @@ TEST_CASE("A rolling neck has the stiffness 4 F_c (a/a0)^1.5 over the rolling di
   CHECK(loads.torque_i[1] == Approx(-4 * pull_off * std::pow(ratio, 1.5) * displacement).epsilon(1e-6));
 }
 
-TEST_CASE("A stuck pair keeps its neck through rebuilds and periodic sides", "[particles]") {
+TEST_CASE("A stuck pair keeps its neck through rebuilds and periodic sides", "[particles][mpi]") {
   BoxCase setup;
   setup.box(Vec3::Zero(), Vec3::Constant(1e-3)).periodic();
   setup.set("adhesion_type", "jkr").set("material_bead_surface_energy", "0.01").set("material_bead_restitution", "1");

@@ -82,3 +82,28 @@ TEST_CASE("The swarm shows the particles as they are", "[particles][mpi]") {
     CHECK(norm * norm * run.particles.total_mass() / 125 / 2 == Approx(run.particles.kinetic_energy()).epsilon(1e-12));
   }
 }
+
+TEST_CASE("Spheres on the sides of a small periodic box, and gliding along them, stay held by some rank",
+          "[particles][mpi]") {
+  BoxCase setup;
+  setup.box(Vec3::Zero(), Vec3::Constant(1e-3)).periodic();
+  setup.set("material_bead_young_modulus", "1e6").set("particles_speed", "1");
+  BoxRun run(setup);
+  // A lattice with places on three sides; those on y = 1 mm glide along it.
+  std::vector<Seed> seeds;
+  for (int k = 0; k < 4; ++k)
+    for (int j = 1; j < 5; ++j)
+      for (int i = 0; i < 4; ++i)
+        seeds.push_back(sphere(Vec3(i, j, k) * 0.25e-3, j == 4 ? Vec3(0.25, 0, 0.125) : Vec3::Zero(), 40e-6));
+  run.particles.add(seeds);
+  for (int n = 0; n < 20; ++n) {
+    run.particles.advance(n * 1e-4, 1e-4);
+    const auto state = gather(run.particles);
+    REQUIRE(state.size() == seeds.size());
+    for (const auto& [id, s] : state) {
+      const Vec3 away = vec3(s.x) - seeds[id].position - (n + 1) * 1e-4 * seeds[id].velocity;
+      for (int d = 0; d < 3; ++d) CHECK(std::abs(std::remainder(away[d], 1e-3)) < 1e-12);
+    }
+  }
+  CHECK(run.particles.departed().empty());
+}

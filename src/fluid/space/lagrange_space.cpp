@@ -136,7 +136,7 @@ void LagrangeSpace::interpolate(const double* vertices, double* values, int comp
 }
 
 void LagrangeSpace::sum_shared(double* values, int components) const {
-  if (mpi_size() == 1) return;
+  if (mpi_size() == 1 || components == 0) return;
   if (order == 1) return mesh.sum_shared(values, components);
   const MPI_Datatype unit = doubles(components);
   std::vector<double> sums(static_cast<size_t>(owned_nodes) * components, 0.0);
