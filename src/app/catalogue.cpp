@@ -15,6 +15,9 @@
 #include "fluid/monolithic.hpp"
 #include "fluid/prescribed.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
+#include "fluid/turbulence/smagorinsky.hpp"
+#include "fluid/turbulence/turbulence_options.hpp"
+#include "fluid/turbulence/wale.hpp"
 #include "particles/brownian.hpp"
 #include "particles/contact_models.hpp"
 #include "particles/field/electric.hpp"
@@ -56,6 +59,9 @@ Options everything() {
   declare<PressureCorrectionOptions>(options, "fluid");
   declare<MonolithicOptions>(options, "fluid");
   declare<PrescribedOptions>(options, "fluid");
+  declare<TurbulenceOptions>(options, "fluid");
+  declare<Smagorinsky>(options, "fluid");
+  declare<Wale>(options, "fluid");
   declare<BoundaryOptions>(options, "boundary_<name>");
   declare<WallBoundaryOptions>(options, "boundary_<name>");
   declare<PotentialBoundaryOptions>(options, "boundary_<name>");

@@ -9,6 +9,7 @@
 #include "fluid/monolithic.hpp"
 #include "fluid/prescribed.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
+#include "fluid/turbulence/turbulence.hpp"
 
 namespace silt {
 namespace {
@@ -35,6 +36,9 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
   if (fluid.scheme != "monolithic" && options.find("fluid_element").value_or("equal_order") != "equal_order")
     throw UserError(fmt::format("option -fluid_element ({}): '{}' needs -fluid_scheme monolithic",
                                 options.origin("fluid_element"), *options.find("fluid_element")));
+  if (fluid.type == "prescribed") Turbulence::refuse(mesh, options, "with -fluid_type prescribed");
+  if (compressible) Turbulence::refuse(mesh, options, "with -fluid_type compressible");
+  if (!compressible && fluid.scheme == "monolithic") Turbulence::refuse(mesh, options, "with -fluid_scheme monolithic");
   if (compressible) {
     if (options.given("fluid_scheme") && fluid.scheme != "monolithic")
       throw UserError("-fluid_scheme pressure_correction is not available with -fluid_type compressible");
@@ -65,6 +69,7 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
                                    fluid.viscosity, fluid.scheme, fluid.order, fluid.model);
   if (fluid.energy)
     made->description_ += fmt::format("; energy, {} J/(kg K), {} W/(m K)", made->heat_capacity_, made->conductivity_);
+  if (const Turbulence* turbulence = made->turbulence()) made->description_ += "; " + turbulence->name();
   if (made->unknowns_ == 0) made->unknowns_ = (mesh.dimension + (fluid.energy ? 2 : 1)) * mesh.total_nodes;
   return made;
 }

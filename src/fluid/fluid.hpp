@@ -29,7 +29,8 @@ struct ParticleLoad {
 
 /// What one fluid step took and left, for the progress line, the diagnostics and the ledger.
 struct FluidStep {
-  int velocity_iterations = 0, pressure_iterations = 0, newton_iterations = 0, energy_iterations = 0;
+  int velocity_iterations = 0, pressure_iterations = 0, newton_iterations = 0, energy_iterations = 0,
+      turbulence_iterations = 0;
   double courant = 0;        ///< largest |u| dt / h
   double mass_residual = 0;  ///< m3/s: inflow - outflow - d/dt int alpha, relative to the inflow (or to 1 when closed)
   Vec3 momentum = Vec3::Zero();  ///< kg m/s, int alpha rho u at the end of the step
@@ -46,6 +47,8 @@ struct BoundaryFlow {
   Vec3 force = Vec3::Zero();  ///< N, force of the fluid on the boundary
   double heat_flow = 0;       ///< W, heat that leaves, conducted and carried
 };
+
+class Turbulence;
 
 /// The carrier phase on a mesh. Implementations: PressureCorrection, Monolithic. The flow never sees a particle.
 class Fluid {
@@ -107,6 +110,8 @@ class Fluid {
   virtual std::vector<Scalar> scalars() const {
     return temperature().empty() ? std::vector<Scalar>{} : std::vector<Scalar>{{"temperature", temperature()}};
   }
+  /// Null for laminar flow.
+  virtual const Turbulence* turbulence() const { return nullptr; }
   /// [nodes] the void fraction that particles see instead of their own; empty unless it is prescribed.
   virtual std::span<const double> given_void_fraction() const { return {}; }
   /// Flow and force per boundary, in the order of Mesh::boundaries. Collective.

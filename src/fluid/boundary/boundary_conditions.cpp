@@ -30,6 +30,7 @@ void BoundaryOptions::options(OptionGroup& option) {
       "Pa, formula in x, y, z, t: static pressure (pressure), stagnation pressure (total_pressure), pressure outside "
       "(far_field, supersonic_inflow)");
   option.group("temperature", temperature);
+  option.group("turbulence", turbulence);
 }
 
 BoundaryConditions::BoundaryConditions(const Mesh& mesh, Options& options, double density, bool compressible)

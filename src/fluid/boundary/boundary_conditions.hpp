@@ -11,6 +11,7 @@
 #include "base/options.hpp"
 #include "fluid/boundary/facets.hpp"
 #include "fluid/boundary/temperature_condition.hpp"
+#include "fluid/turbulence/turbulence_options.hpp"
 
 namespace silt {
 
@@ -34,6 +35,7 @@ struct BoundaryOptions {
   std::string mass_flow = "0";
   std::string pressure = "0";
   TemperatureOptions temperature;
+  TurbulenceInflowOptions turbulence;
   void options(OptionGroup& option);
 };
 

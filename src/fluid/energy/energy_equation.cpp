@@ -76,7 +76,8 @@ void EnergyEquation::add_buoyancy(const Bdf& bdf, const std::vector<double>& voi
 }
 
 int EnergyEquation::solve(double time, const Bdf& bdf, double dt, const ParticleLoad& load,
-                          const std::vector<double>& flux, const std::vector<double>& outflow) {
+                          const std::vector<double>& flux, const std::vector<double>& outflow,
+                          const std::vector<double>* eddy_conductivity) {
   const int n = mesh_.nodes;
   const double capacity = density_ * options_.heat_capacity, end = time + dt;
   const auto position = [&](int i) { return vec3(&mesh_.node_coordinates[3 * static_cast<size_t>(i)]); };
@@ -109,6 +110,17 @@ int EnergyEquation::solve(double time, const Bdf& bdf, double dt, const Particle
   data.mass = mass.data(), data.known = known.data(), data.diffusivity = diffusivity.data();
   data.reaction = reaction.data(), data.load = density.data();
   data.supg = options_.energy_supg;
+  std::vector<double> eddy;
+  if (eddy_conductivity) {
+    eddy = *eddy_conductivity;
+    const size_t corners = mesh_.nodes_per_cell;
+    for (size_t c = 0; c < eddy.size(); ++c) {
+      double alpha = 0;
+      for (size_t a = 0; a < corners; ++a) alpha += load.void_fraction[mesh_.cell_nodes[corners * c + a]] / corners;
+      eddy[c] *= alpha;
+    }
+    data.cell_diffusivity = eddy.data();
+  }
   transport_.assemble(data);
 
   std::vector<double> heat, transfer;

@@ -50,9 +50,10 @@ class EnergyEquation {
   int points() const { return transport_.points(); }
   /// Finds the temperature at time + dt; accept() makes it the present one. `flux` [cells][points()][3] m/s is the
   /// superficial velocity that satisfies the continuity equation, `outflow` [nodes] m3/s int N_i U.n over the whole
-  /// boundary, consistent on shared nodes. Returns the linear iterations; throws SolveFailure. Collective.
+  /// boundary, consistent on shared nodes. `eddy_conductivity` [cells] W/(m K) is what turbulence adds. Returns the
+  /// linear iterations; throws SolveFailure. Collective.
   int solve(double time, const Bdf& bdf, double dt, const ParticleLoad& load, const std::vector<double>& flux,
-            const std::vector<double>& outflow);
+            const std::vector<double>& outflow, const std::vector<double>* eddy_conductivity = nullptr);
   void accept();
 
   std::span<const double> temperature() const { return temperature_; }

@@ -24,11 +24,12 @@ struct CellBatches {
 /// What the per-cell coefficients are made of.
 struct CoefficientTerms {
   double density, viscosity;
-  double rate;                  ///< 1/s, gamma/dt
-  bool model_a;                 ///< pressure share alpha_e, else 1
-  const double* velocity;       ///< [nodes][3] m/s, the convecting velocity w
-  const double* void_fraction;  ///< [nodes]; null: 1
-  const double* drag;           ///< [nodes] kg/m3/s, beta; with void_fraction only
+  double rate;                   ///< 1/s, gamma/dt
+  bool model_a;                  ///< pressure share alpha_e, else 1
+  const double* velocity;        ///< [nodes][3] m/s, the convecting velocity w
+  const double* void_fraction;   ///< [nodes]; null: 1
+  const double* drag;            ///< [nodes] kg/m3/s, beta; with void_fraction only
+  const double* eddy_viscosity;  ///< [padded cells] Pa s, added to the viscosity; null: 0
 };
 
 /// Coefficients constant in each cell, arrays of padded_cells.
@@ -68,6 +69,7 @@ struct MomentumTerms {
   const double* increment_factor;      ///< alpha_e rho c1 k_e^n
   const double* old_increment_factor;  ///< alpha_e rho c2 k_e^{n-1}
   const double* force[3];              ///< f_e; null entries: 0
+  const double* eddy_viscosity;        ///< [padded cells] Pa s, added to the viscosity; null: 0
 };
 
 /// Terms of the continuity equation.

@@ -7,6 +7,11 @@
 namespace silt {
 namespace {
 
+/// The cells' viscosity, with that of the turbulence.
+inline Lanes viscosity_of(double molecular, const double* eddy, long at) {
+  return eddy ? molecular + load(eddy + at) : constant(molecular);
+}
+
 template <int kind>
 void coefficients(const CellBatches& mesh, const CoefficientTerms& in, const CellCoefficients& out) {
   constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
@@ -36,7 +41,8 @@ void coefficients(const CellBatches& mesh, const CoefficientTerms& in, const Cel
     }
     const Lanes share = in.model_a ? alpha : constant(1);
     const Lanes inertia = alpha * rho_rate + beta, h = load(mesh.size + at);
-    const Lanes convection = alpha * (2 * in.density) / h, diffusion = alpha * (12 * in.viscosity) / (h * h);
+    const Lanes mu = viscosity_of(in.viscosity, in.eddy_viscosity, at);
+    const Lanes convection = alpha * (2 * in.density) / h, diffusion = alpha * (12 * mu) / (h * h);
     store(out.void_fraction + at, alpha);
     store(out.pressure_share + at, share);
     store(out.drag + at, beta);
@@ -81,7 +87,7 @@ void cell_forces(const CellBatches& mesh, const ForceTerms& in, const CellCoeffi
 template <int kind, bool porous>
 void momentum(const CellBatches& mesh, const MomentumTerms& in, double* values, double* right) {
   constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
-  const double rho = in.density, mu = in.viscosity;
+  const double rho = in.density;
   for (int batch = 0; batch < mesh.batches; ++batch) {
     const int* node = batch_nodes<kind>(mesh, batch);
     const long at = static_cast<long>(batch) * W;
@@ -108,7 +114,7 @@ void momentum(const CellBatches& mesh, const MomentumTerms& in, double* values, 
     }
     Lanes body[nodes][D];
     if (in.body_force) gather(body, in.body_force, 3, node);
-    const Lanes h = load(mesh.size + at);
+    const Lanes h = load(mesh.size + at), mu = viscosity_of(in.viscosity, in.eddy_viscosity, at);
     Lanes K[nodes][nodes] = {}, r[nodes][D] = {};
     for (int q = 0; q < Shape<kind>::points; ++q) {
       geometry.at(*mesh.reference, q);

@@ -49,6 +49,7 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
       velocity_solver_(mesh),
       pressure_solver_(graph_, boundaries_.pressure_boundary(), boundaries_.closed()),
       energy_(EnergyEquation::create(mesh, options, fluid.energy, fluid.density, gravity, boundaries_, 1)),
+      turbulence_(Turbulence::create(mesh, options, boundaries_)),
       mass_(lumped_mass(mesh)) {
   load_ = ParticleLoad(mesh.nodes);
   density_ = fluid.density;
@@ -57,7 +58,7 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
   reduced_pressure_ = !fluid.hydrostatic;
   initial_pressure_given_ = options.given("fluid_initial_pressure");
   has_weight_ = (fluid.hydrostatic && gravity.norm() > 0) || (energy_ && energy_->buoyant());
-  has_body_force_ = options.given("fluid_body_force") || has_weight_;
+  has_body_force_ = options.given("fluid_body_force") || has_weight_ || turbulence_;
 
   const int n = mesh.nodes;
   for (auto* field : {&velocity_, &old_velocity_, &pressure_gradient_, &velocity_change_, &convecting_, &history_,
@@ -80,6 +81,10 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
     pressure_[i] = initial_pressure(x, 0);
   }
   old_velocity_ = velocity_;
+  if (turbulence_) {
+    density_field_.assign(n, density_), viscosity_field_.assign(n, viscosity_);
+    turbulence_->start(turbulent_flow(velocity_));
+  }
   terms_.pressure = pressure_.data();
   set_pressure_gradient();
   if (fluid.hydrostatic && !initial_pressure_given_)  // what the start will find
@@ -127,6 +132,7 @@ void PressureCorrection::prepare(double time, double dt, const Past& past) {
     boundaries_.evaluate(time, load_.void_fraction.data());
     boundaries_.impose(velocity_.data());
     old_velocity_ = velocity_;
+    if (turbulence_) turbulence_->start(turbulent_flow(velocity_));
   }
   boundaries_.evaluate(time + dt, load_.void_fraction.data());
   bdf_dt_ = dt;
@@ -152,6 +158,7 @@ void PressureCorrection::prepare(double time, double dt, const Past& past) {
       if (mesh_.dimension == 2) force.z() = 0;
       vec3(&body_force_[3 * i]) = force;
     }
+  set_eddy_viscosity();
 }
 
 void PressureCorrection::set_cell_forces(const double* weight) {
@@ -179,14 +186,16 @@ void PressureCorrection::set_momentum_terms() {
   const std::size_t padded = loops_.padded_cells();
   const double* void_fraction = porous_ ? load_.void_fraction.data() : nullptr;
   const double* body = has_body_force_ ? body_force_.data() : nullptr;
+  const double* eddy = turbulence_ ? eddy_viscosity_.data() : nullptr;
   const Past before = past();
-  loops_.coefficients({density_, viscosity_, bdf_.c0, model_a_, convecting_.data(), void_fraction, drag_now_.data()},
-                      cell_);
+  loops_.coefficients(
+      {density_, viscosity_, bdf_.c0, model_a_, convecting_.data(), void_fraction, drag_now_.data(), eddy}, cell_);
   if (porous_ || has_weight_) set_cell_forces(has_weight_ ? weight_.data() : nullptr);
 
   terms_ = {};
   terms_.density = density_, terms_.viscosity = viscosity_, terms_.rate = bdf_.c0, terms_.supg = scheme_.supg;
   terms_.velocity = convecting_.data(), terms_.history = history_.data(), terms_.body_force = body;
+  terms_.eddy_viscosity = eddy;
   if (!porous_) {
     // k = 1/(rho rate): the corrections act as an extrapolated pressure.
     const double now = before.rate > 0 ? bdf_.c1 / before.rate : 0,
@@ -200,7 +209,7 @@ void PressureCorrection::set_momentum_terms() {
                             double* factor) {
     std::fill(factor, factor + padded, 0.0);
     if (rate == 0 || c == 0) return;
-    CoefficientTerms then{density_, viscosity_, rate, model_a_, convecting_.data(), alpha.data(), drag.data()};
+    CoefficientTerms then{density_, viscosity_, rate, model_a_, convecting_.data(), alpha.data(), drag.data(), eddy};
     CellCoefficients result{scratch_[0], scratch_[1], scratch_[2], factor, scratch_[3], {}, {}};
     loops_.coefficients(then, result);
     for (std::size_t k = 0; k < padded; ++k) factor[k] *= cell_.void_fraction[k] * density_ * c;
@@ -309,14 +318,19 @@ FluidStep PressureCorrection::advance(double time, double dt) {
       if (energy_) {
         std::vector<double> outflow = outflow_;
         for (int i = 0; i < mesh_.nodes; ++i) outflow[i] += boundaries_.flow()[i];
-        step.energy_iterations = energy_->solve(time, bdf_, dt, load_, superficial_velocity(phi), outflow);
+        std::vector<double> eddy;
+        if (turbulence_) eddy = turbulence_->cell_eddy_conductivity(heat_capacity_, conductivity_, viscosity_);
+        step.energy_iterations =
+            energy_->solve(time, bdf_, dt, load_, superficial_velocity(phi), outflow, turbulence_ ? &eddy : nullptr);
       }
+      if (turbulence_) step.turbulence_iterations = turbulence_->solve(time, bdf_, dt, turbulent_flow(solution_));
     } catch (const SolveFailure&) {
       if (unknown) pressure_ = start;
       throw;
     }
     accept(before, dt, phi, divergence);
     if (energy_) energy_->accept();
+    if (turbulence_) turbulence_->accept();
   } catch (const SolveFailure&) {
     renew_ = true;
     throw;

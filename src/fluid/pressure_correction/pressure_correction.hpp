@@ -12,6 +12,7 @@
 #include "fluid/pressure_correction/cell_loops.hpp"
 #include "fluid/pressure_correction/pressure_solver.hpp"
 #include "fluid/pressure_correction/velocity_solver.hpp"
+#include "fluid/turbulence/turbulence.hpp"
 
 namespace silt {
 
@@ -48,7 +49,10 @@ class PressureCorrection : public Fluid {
     return energy_ ? energy_->temperature_change() : std::span<const double>();
   }
   std::vector<BoundaryFlow> boundary_flow() const override;
+  const Turbulence* turbulence() const override { return turbulence_.get(); }
+  std::vector<Scalar> scalars() const override;
   std::vector<StateArray> state() override;
+  void restored() override;
 
  private:
   /// The numbers of the last two steps; kept with the nodal arrays so that a restart finds them.
@@ -60,6 +64,9 @@ class PressureCorrection : public Fluid {
   Past past() const;
 
   void prepare(double time, double dt, const Past& past);
+  void set_eddy_viscosity();
+  /// The flow as the turbulence sees it.
+  Turbulence::Flow turbulent_flow(const std::vector<double>& velocity) const;
   void set_cell_forces(const double* weight);
   void set_momentum_terms();
   void assemble_momentum();
@@ -89,8 +96,10 @@ class PressureCorrection : public Fluid {
   VelocitySolver velocity_solver_;
   PressureSolver pressure_solver_;
   std::unique_ptr<EnergyEquation> energy_;
-  std::vector<double> mass_;       ///< [nodes] m3, lumped
-  std::vector<double> node_size_;  ///< [nodes] m, shortest edge of the local cells around
+  std::unique_ptr<Turbulence> turbulence_;
+  std::vector<double> density_field_, viscosity_field_;  ///< [nodes], uniform, for the turbulence
+  std::vector<double> mass_;                             ///< [nodes] m3, lumped
+  std::vector<double> node_size_;                        ///< [nodes] m, shortest edge of the local cells around
   bool has_body_force_ = false, has_weight_ = false, initial_pressure_given_ = false;
 
   // The state: fields of step n, n-1 and of the corrections in between.
@@ -111,7 +120,8 @@ class PressureCorrection : public Fluid {
   CellCoefficients cell_{};
   double *increment_factor_ = nullptr, *old_increment_factor_ = nullptr, *scratch_[4] = {};
   MomentumTerms terms_{};
-  std::vector<double> outflow_;  ///< [nodes] m3/s through the pressure boundaries, of the last step
+  std::vector<double> eddy_viscosity_;  ///< [padded cells] Pa s; empty without turbulence
+  std::vector<double> outflow_;         ///< [nodes] m3/s through the pressure boundaries, of the last step
 
   struct OutletFacet {
     const FacetRule* rule;

@@ -136,7 +136,30 @@ std::vector<Fluid::StateArray> PressureCorrection::state() {
                                     {"velocity_change", &velocity_change_, 3},
                                     {"fluid_steps", &past_, 4}};
   if (energy_) energy_->add_state(arrays);
+  if (turbulence_) turbulence_->add_state(arrays);
   return arrays;
+}
+
+void PressureCorrection::restored() {
+  if (turbulence_) turbulence_->restored();
+}
+
+std::vector<Fluid::Scalar> PressureCorrection::scalars() const {
+  std::vector<Scalar> result = Fluid::scalars();
+  if (turbulence_) turbulence_->add_scalars(result);
+  return result;
+}
+
+Turbulence::Flow PressureCorrection::turbulent_flow(const std::vector<double>& velocity) const {
+  return {velocity, density_field_, viscosity_field_, load_.void_fraction};
+}
+
+void PressureCorrection::set_eddy_viscosity() {
+  if (!turbulence_) return;
+  const auto& cells = turbulence_->cell_eddy_viscosity();
+  eddy_viscosity_.assign(loops_.padded_cells(), cells.empty() ? 0.0 : cells.back());
+  std::copy(cells.begin(), cells.end(), eddy_viscosity_.begin());
+  turbulence_->add_transposed_stress(mesh_, convecting_, load_.void_fraction, body_force_);
 }
 
 }  // namespace silt

@@ -11,10 +11,12 @@ void assemble_transport(const TransportData& d, int first, int count, double* ma
   using V = Lanes<W>;
   constexpr int dim = E::dim, n = E::NP;
   const FlowTable& t = *d.table;
-  V x[n][dim] = {}, mass[n] = {}, known[n] = {}, diffusivity[n] = {}, reaction[n] = {}, load[n] = {}, h = {};
+  V x[n][dim] = {}, mass[n] = {}, known[n] = {}, diffusivity[n] = {}, reaction[n] = {}, load[n] = {}, h = {},
+    added = {};
   for (int l = 0; l < W; ++l) {
     const long cell = first + (l < count ? l : count - 1);
     h[l] = d.cell_size[cell];
+    if (d.cell_diffusivity) added[l] = d.cell_diffusivity[cell];
     for (int a = 0; a < n; ++a) {
       const int node = d.nodes[cell * n + a];
       mass[a][l] = d.mass[node];
@@ -36,7 +38,7 @@ void assemble_transport(const TransportData& d, int first, int count, double* ma
     }
     V flux[dim];
     for (int i = 0; i < dim; ++i) __builtin_memcpy(&flux[i], carried[i], sizeof(V));
-    V k = {}, D = {}, s = {}, f = {};
+    V k = {}, D = added, s = {}, f = {};
     for (int a = 0; a < n; ++a) {
       k += known[a] * t.M[q][a];
       D += diffusivity[a] * t.M[q][a];

@@ -1,0 +1,46 @@
+#pragma once
+#include <string>
+
+#include "base/options.hpp"
+
+namespace silt {
+
+/// The options `-fluid_turbulence...` and the initial state of the turbulence.
+struct TurbulenceOptions {
+  std::string turbulence = "none";
+  std::string wall = "automatic";
+  double prandtl = 0.85;
+  int iterations = 1;
+  double largest_ratio = 1e6;
+  std::string initial_energy = "0", initial_viscosity_ratio = "10";
+  void options(OptionGroup& option) {
+    option("turbulence", turbulence, {"none", "realizable_k_epsilon", "sst_k_omega", "smagorinsky", "wale"},
+           "turbulence model; none: laminar flow, or all scales resolved");
+    option("turbulence_wall", wall, {"automatic", "resolved"},
+           "walls of the k models. automatic: logarithmic law where the first node lies outside the viscous sublayer; "
+           "resolved: none (first node at y+ about 1)");
+    option("turbulence_prandtl", prandtl, "-", "turbulent Prandtl number", positive);
+    option("turbulence_iterations", iterations, "-", "solutions of the two equations in a step", between(1, 100));
+    option("turbulence_largest_ratio", largest_ratio, "-", "largest ratio of eddy viscosity to viscosity", positive);
+    option("initial_turbulent_energy", initial_energy,
+           "m2/s2, formula in x, y, z: turbulent kinetic energy at the start");
+    option("initial_viscosity_ratio", initial_viscosity_ratio,
+           "formula in x, y, z: eddy viscosity over viscosity at the start");
+  }
+};
+
+/// The options `-boundary_<name>_turbulence_...`: the turbulence of what enters.
+struct TurbulenceInflowOptions {
+  std::string intensity = "0", energy = "0", length = "0", viscosity_ratio = "0";
+  void options(OptionGroup& option) {
+    option("intensity", intensity,
+           "turbulence intensity of what enters: k = 1.5 (intensity times speed)^2; formula in x, y, z, t");
+    option("energy", energy,
+           "m2/s2, turbulent kinetic energy of what enters, formula in x, y, z, t (instead of the intensity)");
+    option("length", length, "m, length scale of the turbulence that enters, formula in x, y, z, t");
+    option("viscosity_ratio", viscosity_ratio,
+           "eddy viscosity over viscosity of what enters, formula in x, y, z, t (instead of the length)");
+  }
+};
+
+}  // namespace silt
