@@ -95,8 +95,10 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
   profiles_ = std::make_unique<Profiles>(*mesh_, options, grains);
   budget_ = std::make_unique<Budget>(options, flow, grains);
   walls_ = std::make_unique<WallTable>(particles_.get());
+  energy_ = std::make_unique<EnergyTable>(particles_.get());
   auto through_time = diagnostics_->columns(), along_lines = probes_->line_columns();
   for (const auto& column : walls_->columns()) through_time.push_back(column);
+  for (const auto& column : energy_->quantities()) through_time.push_back(column);
   for (const auto& column : probes_->columns()) through_time.push_back(column);
   for (const auto& column : profiles_->columns()) along_lines.push_back(column);
   std::vector<std::string> asked;
@@ -183,6 +185,7 @@ void Simulation::start() {
   budget_->start(output_->directory(), fluid_.get(), particles_.get());
   if (particles_) departures_.start(output_->directory());
   walls_->start(output_->directory());
+  energy_->start(output_->directory());
   progress_->start(now_.time, time_options_.end);
   if (!restart_) report();
   restart_.reset();
@@ -322,6 +325,7 @@ void Simulation::report() {
   profiles_->sample(now_);
   departures_.record(now_);
   walls_->sample(now_, quantities);
+  energy_->sample(now_, quantities);
   tracked_->sample(now_, quantities);
   expectations_->sample(now_.time, quantities);
   if (output_->due(now_.time) || now_.time >= time_options_.end * (1 - 1e-12)) {

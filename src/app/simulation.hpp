@@ -9,6 +9,7 @@
 #include "app/checkpoint.hpp"
 #include "app/departures.hpp"
 #include "app/diagnostics.hpp"
+#include "app/energy_table.hpp"
 #include "app/expectations.hpp"
 #include "app/moment.hpp"
 #include "app/output.hpp"
@@ -97,6 +98,7 @@ class Simulation {
   std::unique_ptr<Budget> budget_;
   Departures departures_;
   std::unique_ptr<WallTable> walls_;
+  std::unique_ptr<EnergyTable> energy_;
   std::unique_ptr<Expectations> expectations_;
   std::unique_ptr<TrackedParticles> tracked_;
   std::unique_ptr<Progress> progress_;

@@ -23,6 +23,7 @@ struct ColumnRequest {
   int width = 1;     ///< doubles a particle
   GhostValues ghosts = GhostValues::none;
   bool output = true;                                        ///< written to the particle series
+  bool needed = true;                                        ///< a restart refuses a file without it, else zero
   std::function<void(const Seed&, double* row)> start = {};  ///< value of a new particle; zero without it
 };
 

@@ -146,6 +146,7 @@ PairProperties ContactLaws::pair(int a, int b) const {
   PairProperties pair = materials_.pair(a, b);
   pair.friction *= friction_factor_;
   pair.rolling_friction *= friction_factor_;
+  pair.least_share = least_share_;
   // The effective radius grows with both, and is largest at a wall.
   const auto least = [&](int m) { return sizes_.smallest[m]; };
   const auto wall = [&](int m, int other) { return sizes_.largest[m] > 0 ? sizes_.largest[m] : sizes_.largest[other]; };

@@ -51,6 +51,13 @@ class ContactLaws {
     prepare();
   }
 
+  /// At which share of a step springs are read at least: 1/2 where velocities are those predicted by velocity Verlet, 1
+  /// where they moved the particles (semi-implicit Euler).
+  void read_springs_at(double share) {
+    least_share_ = share;
+    prepare();
+  }
+
   /// Duration of a collision of this pair of materials. s
   double duration(int a, int b, const Encounter& encounter) const;
   /// The same for the forces beside the normal law.
@@ -98,7 +105,7 @@ class ContactLaws {
   LawSetup setup_;
   ParticleSizes sizes_;
   std::vector<std::string> notices_, warnings_;
-  double friction_factor_ = 1;
+  double friction_factor_ = 1, least_share_ = 0.5;
   int history_components_ = 0;
 };
 

@@ -49,6 +49,12 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
       heat_(ParticleHeat::create(options, materials, store.columns)) {
   contacts = ContactLists(laws_.history_components());
   wall_contacts = WallContacts(laws_.history_components(), liquid_.active());
+  laws_.read_springs_at(1 - options_.late_share());
+  if (options_.energy) energy_ = std::make_unique<EnergyLedger>(store.columns);
+  if (walls_.count() > 0) last_wall_ = store.columns.add({.name = "last_wall", .output = false, .needed = false});
+  if (options_.orientation)
+    orientation_ =
+        store.columns.add({.name = "orientation", .width = 4, .start = [](const Seed&, double* row) { row[0] = 1; }});
   if (plane_) gravity_[2] = 0;
   for (int d = 0; d < 3; ++d)
     if (mesh.periodic[d]) {
@@ -119,6 +125,7 @@ void Engine::add(const std::vector<Seed>& seeds) {
     wall_memory_.append(nullptr, 0);
     impulses.added += mass * vec3(motion.velocity);
     impulses.added_mass += mass;
+    if (energy_) energy_->came(motion);
   }
   next_id_ += static_cast<std::int64_t>(seeds.size());
   total += static_cast<long long>(seeds.size());
@@ -136,15 +143,8 @@ void Engine::add(const std::vector<Seed>& seeds) {
       if (smallest_.radius[m] < infinity)
         fastest = std::max(fastest, brownian_.speed(*materials[m].density * 4.0 / 3.0 * std::numbers::pi *
                                                     std::pow(smallest_.radius[m], 3)));
-  std::vector<StepBound> bounds;
-  for (const auto& field : fields_)
-    for (const StepBound& bound : field->bounds(materials, smallest_)) bounds.push_back(bound);
-  for (int m = 0; m < materials.count() && heat_; ++m)
-    if (const double time = smallest_.radius[m] < infinity ? heat_->conduction_time(smallest_.radius[m], m) : infinity;
-        time < infinity)
-      bounds.push_back({time, fmt::format("heat conduction of {}", materials[m].name)});
-  limit = limit_step(options_, materials, laws_, smallest_, options_.speed.value_or(std::max(mpi_max(fastest), fall)),
-                     bounds);
+  speed_ = options_.speed.value_or(std::max(mpi_max(fastest), fall));
+  choose_step();
 
   skin_ = options_.skin > 0 ? options_.skin : 0.2 * largest_radius_;
   const double reach = 2 * largest_radius_ + laws_.setup().leave_gap + skin_;
@@ -157,6 +157,17 @@ void Engine::add(const std::vector<Seed>& seeds) {
   started_ = false;
 }
 
+void Engine::choose_step() {
+  std::vector<StepBound> bounds;
+  for (const auto& field : fields_)
+    for (const StepBound& bound : field->bounds(materials, smallest_)) bounds.push_back(bound);
+  for (int m = 0; m < materials.count() && heat_; ++m)
+    if (const double time = smallest_.radius[m] < infinity ? heat_->conduction_time(smallest_.radius[m], m) : infinity;
+        time < infinity)
+      bounds.push_back({time, fmt::format("heat conduction of {}", materials[m].name)});
+  limit = limit_step(options_, materials, laws_, smallest_, speed_, bounds);
+}
+
 void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   ++rebuilds_;
   if (fluid_) collect_fluid();
@@ -164,9 +175,11 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   if (within_step)
     for (int p = 0; p < store.owned && fast.empty(); ++p)
       if (h * vec3(store.motion[p].velocity).norm() > store.motion[p].radius)
-        fast =
-            fmt::format("{} moves more than its radius in a step of {:g} s", describe(store.motion[p], store.id[p]), h);
-  stop_if_any(fast);
+        fast = fmt::format("{} moves more than its radius in a step of {:g} s (-particles_fast)", describe(p), h);
+  if (options_.fast == "stop")
+    stop_if_any(fast);
+  else
+    report("warn", fast);
 
   if (!detached_) detach();
   const std::vector<Gone> gone = migration_.run(store, carried, memory_.rows, wall_memory_);
@@ -217,73 +230,6 @@ void Engine::sum_up() {
   if (plane_) fluid_force_[2] = 0;
 }
 
-void Engine::act_fields(double time, double dt) {
-  FieldStep step{store, periods_, materials, communicator_, time, dt};
-  std::vector<Vec3> contacts_only(store.owned);
-  for (int p = 0; p < store.owned; ++p) contacts_only[p] = vec3(store.present[p].force);
-  for (const auto& field : fields_) field->act(step);
-  for (int p = 0; p < store.owned; ++p)
-    vec3(store.action[p].field_impulse) += dt * (vec3(store.present[p].force) - contacts_only[p]);
-  field_total_ = step.external;
-  if (plane_) field_total_[2] = 0;
-  field_size_ = step.size;
-}
-
-void Engine::evaluate(double time, double dt) {
-  const LawSetup& setup = laws_.setup();
-  CandidateSweep search;
-  search.motion = store.motion.data();
-  search.periods = periods_;
-  search.enter_gap = setup.enter_gap;
-  contacts.fill(search);
-  kernels_.candidates(search);
-  contacts.enter(search.entering, search.entering_count, store.dummy());
-
-  walls_.points(store.motion.data(), time, wall_contacts.next());
-  wall_contacts.adopt();
-  liquid_.exchange(store, contacts, wall_contacts, periods_);
-
-  PairSweep sweep;
-  sweep.motion = store.motion.data();
-  sweep.load = store.present.data();
-  sweep.pairs = contacts.pairs();
-  sweep.laws = setup;
-  sweep.periods = periods_;
-  sweep.dt = dt;
-  sweep.deepest_share = options_.overlap_limit;
-  sweep.leaving = contacts.leaving();
-  kernels_.pairs(sweep);
-  if (sweep.too_deep >= 0) trouble_ = describe_deepest(sweep.too_deep);
-  contacts.leave(sweep.leaving, sweep.leaving_count, store.dummy());
-
-  std::fill(wall_force_sum_.begin(), wall_force_sum_.end(), 0.0);
-  std::fill(wall_torque_sum_.begin(), wall_torque_sum_.end(), 0.0);
-  WallSweep walls;
-  walls.motion = store.motion.data();
-  walls.load = store.present.data();
-  walls.laws = setup;
-  walls.dt = dt;
-  walls.wall_force = reinterpret_cast<double(*)[3]>(wall_force_sum_.data());
-  walls.wall_torque = reinterpret_cast<double(*)[3]>(wall_torque_sum_.data());
-  wall_contacts.fill(walls);
-  kernels_.walls(walls);
-  wall_total_.setZero();
-  for (std::size_t b = 0; b < wall_force.size(); ++b) {
-    wall_force[b] = vec3(&wall_force_sum_[3 * b]);
-    wall_torque[b] = vec3(&wall_torque_sum_[3 * b]);
-    wall_total_ += wall_force[b];
-  }
-  if (plane_) wall_total_[2] = 0;
-  for (const WallPoint& point : wall_contacts.points()) {
-    const Motion& motion = store.motion[point.particle];
-    if (motion.radius - point.distance > options_.overlap_limit * motion.radius)
-      trouble_ = fmt::format("{} overlaps the wall {} by {:.4g} of its radius, limit {:g} (-particles_overlap_limit)",
-                             describe(motion, store.id[point.particle]), walls_.name(point.boundary),
-                             1 - point.distance / motion.radius, options_.overlap_limit);
-  }
-  if (!fields_.empty()) act_fields(time, dt);
-}
-
 Integration Engine::pass(double h) {
   Integration step;
   step.motion = store.motion.data();
@@ -294,6 +240,9 @@ Integration Engine::pass(double h) {
   step.origin = reinterpret_cast<const double(*)[4]>(store.origin.data());
   step.count = store.owned;
   step.dt = h;
+  step.late_share = options_.late_share();
+  step.second = (1 - step.late_share) * h * h;
+  if (orientation_ >= 0) step.orientation = reinterpret_cast<double(*)[4]>(store.columns.values(orientation_));
   for (int d = 0; d < 3; ++d) step.gravity[d] = gravity_[d];
   if (plane_) {
     step.move[2] = 0;
@@ -308,6 +257,7 @@ void Engine::start(double time) {
   for (int p = 0; p < store.all(); ++p) store.present[p] = Load{};
   trouble_.clear();
   evaluate(time, 0);
+  account(0);
   try {
     stop_if_any(trouble_);
   } catch (const RunError& error) {
@@ -338,7 +288,9 @@ ParticleStep Engine::advance(double time, double dt) {
   acted_ = 0;
   prepare_fluid(h);
   sum_up();
+  if (energy_) energy_->begin(store);
   const bool alone = mpi_size() == 1;
+  const double late = options_.late_share(), early = 1 - late;
   trouble_.clear();
   for (int s = 0; s < substeps; ++s) {
     impulses.gravity += h * mass_ * gravity_;
@@ -346,7 +298,7 @@ ParticleStep Engine::advance(double time, double dt) {
     acted_ += h;
 
     Integration step = pass(h);
-    step.correct = s > 0;
+    step.correct = s > 0 && late > 0 && !energy_;
     step.drift = true;
     kernels_.integrate(step);
     if (brownian_.active() && fluid_) step.largest_square = brownian_.act(store, step, time + (s + 1) * h);
@@ -363,17 +315,19 @@ ParticleStep Engine::advance(double time, double dt) {
     else
       halo_.forward(store);
     const Vec3 before = wall_total_, drawn = field_total_;
-    add_wall_impulses(0.5 * h);
+    add_wall_impulses(early * h);
     evaluate(time + (s + 1) * h, h);
-    add_wall_impulses(0.5 * h);
-    impulses.walls += 0.5 * h * (before + wall_total_);
-    impulses.fields += 0.5 * h * (drawn + field_total_);
+    add_wall_impulses(late * h);
+    impulses.walls += h * (early * before + late * wall_total_);
+    impulses.fields += h * (early * drawn + late * field_total_);
     impulses.exchanged += h * field_size_;
+    if (energy_) {
+      correct(h);
+      account(h);
+    }
     if (heat_) heat_->advance(store, contacts, periods_, time + (s + 1) * h, h);
   }
-  Integration step = pass(h);
-  step.correct = true;
-  kernels_.integrate(step);
+  if (!energy_) correct(h);
   collect_fluid();
   stop_if_any(trouble_);
   advanced_ = !settling_;
@@ -383,6 +337,7 @@ ParticleStep Engine::advance(double time, double dt) {
     if (removed > before) {  // the forces that those gone exerted must not act on
       for (int p = 0; p < store.all(); ++p) store.present[p] = Load{};
       evaluate(time + dt, 0);
+      account(0);
       stop_if_any(trouble_);
     }
   }

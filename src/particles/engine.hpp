@@ -6,6 +6,7 @@
 #include "particles/brownian.hpp"
 #include "particles/contact_laws.hpp"
 #include "particles/contact_lists.hpp"
+#include "particles/energy_ledger.hpp"
 #include "particles/force_field.hpp"
 #include "particles/halo.hpp"
 #include "particles/heat/particle_heat.hpp"
@@ -53,6 +54,7 @@ struct Particles::Snapshot {
   Vec3 wall_total, field_total;
   std::vector<Vec3> wall_force, wall_torque;
   std::vector<WallMotion::State> wall_states;
+  EnergyLedger::State energy;
   std::vector<StreamState> streams;
   bool started;
 };
@@ -79,6 +81,8 @@ class Engine {
 
   /// J/K, null without temperatures.
   const ParticleHeat* heat() const { return heat_.get(); }
+  /// Null unless `-particles_energy`.
+  EnergyLedger* energy() const { return energy_.get(); }
 
   /// Momentum etc. that this rank's particles received since the last take_impulses().
   Particles::Impulses impulses;
@@ -106,6 +110,11 @@ class Engine {
   void rebuild(Aligned<Load>& carried, bool within_step, double h);
   void depart(const std::vector<Gone>& gone, bool within_step, double h);
   void evaluate(double time, double dt);
+  /// Takes the work of the step that evaluate() ended, and lets go of the contacts that ended with it.
+  void account(double h);
+  void correct(double h);
+  /// The longest step at this collision speed, for the particles that are there. Throws UserError.
+  void choose_step();
   void take_out(double time);
   void move_walls(double time, double h);
   void add_wall_impulses(double h);
@@ -119,6 +128,12 @@ class Engine {
   void sum_up();
   Integration pass(double h);
   std::string describe(const Motion& motion, std::int64_t id) const;
+  /// The same with what the particle touches and the wall it touched last.
+  std::string describe(int p) const;
+  std::string describe(const Gone& gone) const;
+  std::string last_wall(double number) const;
+  /// Stops at the next opportunity, or warns, as the option says.
+  void report(const std::string& option, const std::string& text);
   /// Throws RunError with the text of the lowest rank that has one, on all ranks; does nothing when none has.
   /// Collective.
   void stop_if_any(const std::string& text) const;
@@ -141,6 +156,12 @@ class Engine {
   const Kernels& kernels_;
   Vec3 gravity_;
   bool plane_;
+  int orientation_ = -1;  ///< column, -1: not wanted
+  int last_wall_ = -1;    ///< column, number of the wall it touched last and 1; -1: there are no walls
+  double speed_ = 0;      ///< m/s, largest collision speed expected
+  int leaving_count_ = 0;
+  long long warnings_ = 0;
+  std::unique_ptr<EnergyLedger> energy_;
   Periods periods_;
   double skin_ = 0, largest_radius_ = 0;
   SmallestRadii smallest_;

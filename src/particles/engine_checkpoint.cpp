@@ -87,10 +87,13 @@ void Engine::save(CheckpointWriter& to) {
   std::vector<double> sizes;
   if (mpi_rank() == 0)
     for (int m = 0; m < materials.count(); ++m)
-      sizes.insert(sizes.end(), {laws_.sizes().smallest[m], laws_.sizes().largest[m]});
-  to.add("particle_sizes", 2, sizes);
-  to.note("particle_step", limit.step);
-  to.note("particle_step_reason", limit.reason);
+      sizes.insert(sizes.end(), {laws_.sizes().smallest[m], laws_.sizes().largest[m], smallest_.radius[m]});
+  to.add("particle_sizes", 3, sizes);
+  to.note("particle_speed", speed_);
+  if (energy_) {
+    const EnergyLedger::State state = energy_->state();
+    to.add("energy_account", sizeof(state) / sizeof(double), as_numbers(&state, 1));
+  }
   to.note("particles_total", static_cast<double>(total));
   to.note("particles_removed", static_cast<double>(removed));
   to.note("particles_next_id", static_cast<double>(next_id_));
@@ -173,9 +176,12 @@ void Engine::load(const CheckpointReader& from, bool elsewhere) {
   const auto saved_sizes = from.numbers("particle_sizes");
   ParticleSizes sizes(materials.count());
   for (int m = 0; m < materials.count(); ++m)
-    sizes.smallest[m] = saved_sizes.at(2 * m), sizes.largest[m] = saved_sizes.at(2 * m + 1);
+    sizes.smallest[m] = saved_sizes.at(3 * m), sizes.largest[m] = saved_sizes.at(3 * m + 1);
   laws_.set_sizes(sizes);
-  limit = {from.number("particle_step"), from.text("particle_step_reason")};
+  smallest_.radius.resize(materials.count());
+  for (int m = 0; m < materials.count(); ++m) smallest_.radius[m] = saved_sizes.at(3 * m + 2);
+  speed_ = options_.speed.value_or(from.number("particle_speed"));
+  choose_step();
   total = static_cast<long long>(from.number("particles_total"));
   removed = static_cast<long long>(from.number("particles_removed"));
   next_id_ = static_cast<std::int64_t>(from.number("particles_next_id"));
@@ -183,6 +189,22 @@ void Engine::load(const CheckpointReader& from, bool elsewhere) {
   skin_ = from.number("particles_skin");
   started_ = from.number("particles_started") != 0;
   advanced_ = true;
+  if (energy_) {
+    energy_->set_state({});
+    if (from.has("energy_account")) {  // a row a rank
+      const auto rows = from.numbers("energy_account");
+      for (std::size_t r = 0; r < each.size(); ++r) {
+        EnergyLedger::State state;
+        if (same_ranks ? static_cast<long long>(r) != rank : rank != 0) continue;
+        std::copy_n(&rows[r * sizeof(state) / sizeof(double)], sizeof(state) / sizeof(double),
+                    reinterpret_cast<double*>(&state));
+        energy_->add_state(state);
+      }
+    } else {
+      energy_->restart(store);
+      started_ = false;
+    }
+  }
   contacts.clear();
   detached_ = true;
   fluid_ = false;
@@ -201,6 +223,7 @@ void Engine::load_columns(const CheckpointReader& from) {
   for (int c = 0; c < store.columns.count(); ++c) {
     const ColumnRequest& column = store.columns.request(c);
     const std::string name = "column_" + column.name;
+    if (!column.needed && !from.has(name)) continue;
     if (!from.has(name) || from.components(name) != column.width)
       from.refuse(fmt::format("was written by a case whose particles have no {}", column.name));
     const auto all = from.numbers(name);

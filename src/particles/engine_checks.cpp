@@ -33,11 +33,55 @@ std::string Engine::describe(const Motion& motion, std::int64_t id) const {
       motion.velocity[2], motion.spin[0], motion.spin[1], motion.spin[2], motion.radius, mpi_rank());
 }
 
+std::string Engine::last_wall(double number) const {
+  const int wall = static_cast<int>(number) - 1;
+  return wall < 0 || wall >= walls_.count() ? "" : fmt::format(", last wall {}", walls_.name(wall));
+}
+
+std::string Engine::describe(int p) const {
+  std::string partners;
+  const auto name = [&](const std::string& one) { partners += (partners.empty() ? ", touches " : ", ") + one; };
+  if (detached_) {
+    for (int k = memory_.rows.start[p]; k < memory_.rows.start[p + 1]; ++k)
+      name(fmt::format("{}", std::bit_cast<std::int64_t>(memory_.rows.row(k)[0])));
+  } else {
+    for (int k = 0; k < contacts.contacts(); ++k) {
+      const int i = contacts.contact_i()[k], j = contacts.contact_j()[k];
+      if (i == p || j == p) name(fmt::format("{}", store.id[i == p ? j : i]));
+    }
+  }
+  for (const WallPoint& point : wall_contacts.points())
+    if (!detached_ && point.particle == p) name("the wall " + walls_.name(point.boundary));
+  return describe(store.motion[p], store.id[p]) + partners +
+         (last_wall_ >= 0 && p < store.owned ? last_wall(*store.columns.row(last_wall_, p)) : "");
+}
+
+std::string Engine::describe(const Gone& gone) const {
+  std::string partners;  // those on this rank
+  for (int p = 0; p < store.owned; ++p)
+    for (int k = memory_.rows.start[p]; k < memory_.rows.start[p + 1]; ++k)
+      if (std::bit_cast<std::int64_t>(memory_.rows.row(k)[0]) == gone.id)
+        partners += fmt::format("{}{}", partners.empty() ? ", touched " : ", ", store.id[p]);
+  return describe(gone.motion, gone.id) + partners +
+         (last_wall_ >= 0 ? last_wall(gone.columns[store.columns.offset(last_wall_)]) : "");
+}
+
+void Engine::report(const std::string& option, const std::string& text) {
+  if (text.empty()) return;
+  if (option == "stop") {
+    trouble_ = text;
+    return;
+  }
+  // What goes on is told after 1, 2, 4, 8 ... times.
+  ++warnings_;
+  if ((warnings_ & (warnings_ - 1)) == 0)
+    fmt::print(stderr, "silt: warning {} of rank {}: {}\n", warnings_, mpi_rank(), text);
+}
+
 std::string Engine::describe_deepest(int contact) const {
   const int i = contacts.contact_i()[contact], j = contacts.contact_j()[contact];
   return fmt::format("{} overlaps another by more than {:g} of the smaller radius (-particles_overlap_limit): {}",
-                     describe(store.motion[i], store.id[i]), options_.overlap_limit,
-                     describe(store.motion[j], store.id[j]));
+                     describe(i), options_.overlap_limit, describe(j));
 }
 
 void Engine::take_sizes() {
@@ -57,7 +101,7 @@ std::string Engine::find_bad() const {
     const Motion& motion = store.motion[p];
     double sum = 0;
     for (int d = 0; d < 3; ++d) sum += motion.position[d] + motion.velocity[d] + motion.spin[d];
-    if (!std::isfinite(sum)) return "not a number: " + describe(motion, store.id[p]);
+    if (!std::isfinite(sum)) return "not a number: " + describe(p);
   }
   return "a particle's position is not a number";
 }

@@ -32,6 +32,7 @@ void Engine::prepare_fluid(double h) {
                       ? (h - step.first) / step.rate
                       : h * h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z * (1.0 / 120 - z * (1.0 / 720 - z / 5040)))));
     step.corrector = step.second / h;
+    if (options_.late_share() == 0) step.second = h * step.first;
     if (brownian_.overdamped() && step.rate > 0) {  // without inertia: v = u + F/k at once
       step.first = step.corrector = 1 / step.rate;
       step.second = h / step.rate;

@@ -25,6 +25,7 @@ void Engine::settle(const SettleOptions& options) {
   laws_.scale_friction(1);
   settling_ = false;
   impulses = {};
+  if (energy_) energy_->restart(store);
 }
 
 void Engine::heat_held(double time, double dt) {
@@ -102,6 +103,7 @@ std::shared_ptr<const Particles::Snapshot> Engine::snapshot() const {
                           wall_force,
                           wall_torque,
                           walls_.states(),
+                          energy_ ? energy_->state() : EnergyLedger::State{},
                           streams_.states(),
                           started_});
 }
@@ -128,6 +130,7 @@ void Engine::restore(const Particles::Snapshot& saved) {
   wall_force = saved.wall_force;
   wall_torque = saved.wall_torque;
   walls_.set_states(saved.wall_states);
+  if (energy_) energy_->set_state(saved.energy);
   streams_.set_states(saved.streams);
   taken_out_.clear();
   field_total_ = saved.field_total;

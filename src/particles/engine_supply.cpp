@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "base/petsc.hpp"
 #include "particles/engine.hpp"
 
@@ -51,7 +52,11 @@ void Engine::supply(double time, double dt) {
     const Vec3 period(periods_.length[0], periods_.length[1], periods_.length[2]);
     const auto seeds =
         streams_.add(s, time, dt, gather_near(store, streams_.region(s), largest_radius_, period, communicator_));
-    if (!seeds.empty()) add(seeds);
+    try {
+      if (!seeds.empty()) add(seeds);
+    } catch (const UserError& error) {  // the run goes on from the last good state once the case is mended
+      throw RunError(std::string("a stream adds particles: ") + error.what());
+    }
   }
 }
 
@@ -69,7 +74,7 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
     leaving.action = one.action;
     leaving.columns = one.columns;
     leaving.acted = acted_;
-    if (within_step) {
+    if (within_step && options_.late_share() > 0) {
       // It ends the step without contacts at its new place: the corrector for a force that has gone to zero.
       const double share = 1 / (1 + one.action.added_mass * one.motion.inverse_mass);
       const double z = one.action.exchange * one.motion.inverse_mass * share * h;
@@ -86,12 +91,14 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
     }
     impulses.removed -= leaving.mass * leaving.velocity;
     impulses.removed_mass += leaving.mass;
+    if (energy_ && within_step) energy_->went_from(one.motion, one.columns, store.columns);
+    if (energy_ && !within_step) energy_->went(one.motion);
     departed.push_back(leaving);
     const bool open = one.boundary >= 0 && walls_.role(one.boundary) == BoundaryRole::open;
     if (one.boundary < 0 || open || walls_.role(one.boundary) == BoundaryRole::wall) {
       ++lost;
       if (text.empty())
-        text = fmt::format("lost {} has passed {}{}", describe(one.motion, one.id),
+        text = fmt::format("lost {} has passed {}{}", describe(one),
                            one.boundary < 0 ? "no boundary"
                            : open           ? "the open boundary "
                                             : "the wall ",
@@ -101,7 +108,7 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
   if (options_.lost == "stop")
     stop_if_any(text);
   else if (lost > 0)
-    fmt::print(stderr, "silt: warning: {} ({} lost on this rank)\n", text, lost);
+    report("warn", fmt::format("{} ({} lost on this rank)", text, lost));
 }
 
 void Engine::take_out(double time) {
@@ -121,6 +128,7 @@ void Engine::take_out(double time) {
     gone.cell = store.cell[p];
     impulses.removed -= gone.mass * gone.velocity;
     impulses.removed_mass += gone.mass;
+    if (energy_) energy_->went(motion);
     leaving.push_back(gone);
   }
   const long long count = mpi_sum(static_cast<long long>(leaving.size()));

@@ -1,5 +1,6 @@
 // The pass over all particles that moves them; part of sweep_kernels.hpp, compiled once per instruction set.
 #pragma once
+#include "particles/orientation.hpp"
 #include "particles/pack.hpp"
 #include "particles/sweep.hpp"
 
@@ -20,7 +21,7 @@ void integrate_all(Integration& step) {
     const double inverse_mass = motion.inverse_mass;
     const double inverse_inertia = 2.5 * inverse_mass / (motion.radius * motion.radius);
     const Quad force = quad(step.present[p].force), torque = quad(step.present[p].torque);
-    double first = h, second = 0.5 * h * h, corrector = 0.5 * h, share = 1;
+    double first = h, second = step.second, corrector = 0.5 * h, share = 1;
     double turn_first = h, turn_corrector = 0.5 * h;
     Quad impulse{};
     if constexpr (fluid) {
@@ -57,7 +58,12 @@ void integrate_all(Integration& step) {
       velocity += every(first) * acceleration;
       Quad turned = every(inverse_inertia) * torque;
       if constexpr (turning) turned += every(step.turning[p].rate) * (quad(step.turning[p].spin) - spin);
-      spin += every(turn_first) * turn * turned;
+      turned *= every(turn_first) * turn;
+      spin += turned;
+      if (step.orientation) {
+        const Quad mean = every(h) * (spin - every(step.late_share) * turned);
+        turn_by(step.orientation[p], mean[0], mean[1], mean[2]);
+      }
       *reinterpret_cast<Quad*>(motion.position) = position;
       const Quad moved = position - quad(step.origin[p]);
       const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];

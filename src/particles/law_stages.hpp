@@ -23,6 +23,7 @@ struct alignas(64) Block {
   double normal_force[block_size], damping[block_size], contact_radius[block_size], stiffness[block_size];
   double pull_off[block_size] = {};  ///< stays 0 without adhesion
   double pull[block_size];           ///< N, normal force besides normal_force; cohesive laws only
+  double noted[block_size];          ///< N, normal_force as the normal law left it; only where traced
   double force[3][block_size], torque[3][block_size];
 };
 
@@ -224,6 +225,10 @@ inline void add_pull_stage(Block& block, const StageCall& call) {
       store(&block.force[d][o], load(&block.force[d][o]) + load(&block.pull[o]) * load(&block.normal[d][o]));
 }
 
+inline void note_normal_stage(Block& block, const StageCall& call) {
+  for (int o = 0; o < call.count; o += lanes) store(&block.noted[o], load(&block.normal_force[o]));
+}
+
 /// The stage functions of a list of models, by place in the list.
 #define SILT_STAGE_OF(kind)                                                         \
   template <bool several, class... Model>                                           \
@@ -261,6 +266,7 @@ class Laws {
   template <bool several>
   SILT_INLINE void choose(const LawSetup& setup) {
     add(normal_function<several>(static_cast<const NormalModels*>(nullptr), setup.normal.model), setup.normal);
+    if (setup.traced) add(note_normal_stage, whole_);
     if (setup.cohesive) {
       // The adhesion sets the pull, be it none; the others add to it.
       add(adhesion_function<several>(static_cast<const AdhesionModels*>(nullptr), setup.adhesion.model),

@@ -58,6 +58,7 @@ struct PairProperties {
   double surface_energy;                                  ///< J/m2, half the work of adhesion
   double hamaker;                                         ///< J
   double potential_product, potential_squares;            ///< V2, psi_i psi_j and psi_i^2 + psi_j^2
+  double least_share = 0.5;                               ///< of a step's slip before a spring is read (share_of_step)
   double smallest_radius = infinity, largest_radius = 0;  ///< m, effective, of the particles of the run
 };
 

@@ -12,8 +12,11 @@ struct ParticleOptions {
   bool step_override = false;
   std::optional<double> speed;
   double skin = 0, overlap_limit = 0.25;
-  std::string lost = "stop", instructions = "auto";
-  bool plane = false, fixed = false;
+  std::string lost = "stop", deep = "stop", fast = "stop", instructions = "auto";
+  std::string integrator = "velocity_verlet";
+  bool plane = false, fixed = false, orientation = false, energy = false;
+  /// The share of a step's new force in the change of velocity over that step.
+  double late_share() const { return integrator == "velocity_verlet" ? 0.5 : 0.0; }
   void options(OptionGroup& option) {
     option("step", step, "s", "time step of the particles; 0: as long as the step fractions allow", non_negative);
     option("step_fraction", step_fraction, "-", "longest step as a share of the shortest collision",
@@ -26,8 +29,15 @@ struct ParticleOptions {
            positive);
     option("skin", skin, "m", "neighbours are listed this much beyond touching; 0: a tenth of the largest diameter",
            non_negative);
-    option("overlap_limit", overlap_limit, "-", "an overlap beyond this share of the smaller radius stops the run",
+    option("overlap_limit", overlap_limit, "-", "overlap that is too deep, as a share of the smaller radius",
            Range{0, 1, true, false});
+    option("deep", deep, {"stop", "warn"}, "what to do about an overlap beyond particles_overlap_limit");
+    option("fast", fast, {"stop", "warn"}, "what to do about a particle that moves more than its radius in a step");
+    option("integrator", integrator, {"velocity_verlet", "semi_implicit_euler"},
+           "velocity_verlet: second order in the step; semi_implicit_euler: first order, the velocity first");
+    option("orientation", orientation,
+           "particles carry their orientation, a unit quaternion (w, x, y, z; start 1, 0, 0, 0), for the output");
+    option("energy", energy, "work on the particles by mechanism, every step, in energy.csv");
     option("lost", lost, {"stop", "warn"}, "what to do when a particle has passed a wall");
     option("instructions", instructions, {"auto", "plain", "avx2", "avx512"},
            "processor instructions of the particle loops");

@@ -58,6 +58,7 @@ DM Particles::swarm() { return impl_->swarm.refresh(impl_->mesh, impl_->store); 
 
 void Particles::kick(int i, const Vec3& impulse) {
   Motion& motion = impl_->store.motion[i];
+  if (impl_->energy()) impl_->energy()->kicked(motion, impulse);
   for (int d = 0; d < 3; ++d) motion.velocity[d] += impulse[d] * motion.inverse_mass;
   impl_->impulses.kicks += impulse;
 }
@@ -115,6 +116,25 @@ Particles::Impulses Particles::take_impulses() {
   for (int k = 0; k < 3; ++k) *amounts[k] = values[24 + k];
   mine = {};
   return all;
+}
+
+double Particles::EnergyAccount::residual() const {
+  double sum = kinetic + rotational + stored + work[removed];
+  for (int m = damping; m < removed; ++m) sum -= work[m];
+  return sum;
+}
+
+bool Particles::has_energy_account() const { return impl_->energy() != nullptr; }
+
+Particles::EnergyAccount Particles::energy_account() const {
+  EnergyAccount account;
+  account.kinetic = kinetic_energy();
+  account.rotational = rotational_energy();
+  if (!impl_->energy()) return account;
+  account.work = impl_->energy()->work();
+  MPI_Allreduce(MPI_IN_PLACE, account.work.data(), EnergyAccount::mechanisms, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  account.stored = mpi_sum(impl_->energy()->stored());
+  return account;
 }
 
 std::vector<std::string> Particles::wall_names() const {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -160,6 +161,40 @@ class Particles {
     double exchanged = 0;  ///< N s, sum of the magnitudes of what fields made particles give each other
   };
   Impulses take_impulses();
+
+  /// The energy of all particles and the work done on them since the start, by mechanism. J
+  struct EnergyAccount {
+    enum Mechanism {
+      elastic,  ///< normal springs; what they take is in `stored`
+      damping,  ///< normal dashpots
+      friction,
+      rolling,
+      twisting,
+      adhesion,  ///< every force along the line of centres beside the normal law
+      walls,     ///< of moving walls
+      fields,
+      gravity,
+      fluid,
+      added,
+      removed,
+      mechanisms
+    };
+    using Work = std::array<double, mechanisms>;
+    static constexpr const char* names[mechanisms] = {"elastic",  "damping",  "friction", "rolling",
+                                                      "twisting", "adhesion", "walls",    "fields",
+                                                      "gravity",  "fluid",    "added",    "removed"};
+    double kinetic = 0, rotational = 0;
+    double stored = 0;  ///< in normal springs
+    Work work{};
+    /// Energy that nothing accounts for: what is there less all that was added and done, the springs' work apart.
+    double residual() const;
+    /// What dashpots, friction, rolling and twisting took.
+    double dissipated() const { return -work[damping] - work[friction] - work[rolling] - work[twisting]; }
+  };
+  /// Whether `-particles_energy` asks for it.
+  bool has_energy_account() const;
+  /// Collective.
+  EnergyAccount energy_account() const;
 
   /// What the particles did to one wall, mean over the last advance(), and where the wall is.
   struct WallLoad {

@@ -25,6 +25,7 @@ struct LawSetup {
   int materials = 1;
   bool extended = false;  ///< a law reads the extended fields of Contact
   bool cohesive = false;  ///< a law acts beyond touching or pulls
+  bool traced = false;    ///< the sweep's trace is wanted
   int history_components = 0;
   double enter_gap = 0;  ///< m, a pair is taken among the contacts when the surfaces are nearer than this
   double leave_gap = 0;  ///< m, and leaves them when they are further apart than this
@@ -45,6 +46,10 @@ struct Periods {
   bool any = false;
 };
 
+/// What a sweep may leave behind of every contact, a component after the other: the normal law's force (N), all force
+/// on i (N), the couple of rolling and twisting on i (N m).
+inline constexpr int trace_width = 7;
+
 struct PairSweep {
   const Motion* motion = nullptr;
   Load* load = nullptr;
@@ -56,6 +61,7 @@ struct PairSweep {
   int* leaving = nullptr;    ///< out: places of pairs that no longer touch, ascending
   int leaving_count = 0;     ///< out
   int too_deep = -1;         ///< out: place of a pair with too large an overlap, or -1
+  double* trace = nullptr;   ///< out: [trace_width][pairs.stride], null: not wanted; needs laws.traced
 };
 
 struct CandidateSweep {
@@ -80,6 +86,7 @@ struct WallSweep {
   double dt = 0;
   double (*wall_force)[3] = nullptr;   ///< out: N, added to the entry of each point's boundary; force on the particles
   double (*wall_torque)[3] = nullptr;  ///< out: N m, about the origin, on the particles
+  double* trace = nullptr;             ///< out: [trace_width][stride] as for pairs
 };
 
 /// The fluid's share in a particle's motion over one substep, from FluidAction: exponential integration of
@@ -104,7 +111,8 @@ struct alignas(64) TurnStep {
 };
 
 /// Velocity Verlet as predictor (drift: position, and velocity with the present force, so that velocity-dependent
-/// contact forces see the velocity of their own time) and corrector (half the change of the force).
+/// contact forces see the velocity of their own time) and corrector (half the change of the force); semi-implicit Euler
+/// is a drift with second = h^2, without corrector.
 struct Integration {
   Motion* motion = nullptr;
   Load *present = nullptr, *previous = nullptr;  ///< forces at the present positions; those of the step before
@@ -113,6 +121,9 @@ struct Integration {
   const double (*origin)[4] = nullptr;           ///< m, positions at the last rebuild
   int count = 0;
   double dt = 0;
+  double second = 0;                   ///< s2, how far a unit acceleration moves a particle without drag
+  double (*orientation)[4] = nullptr;  ///< unit quaternions w, x, y, z; null: not wanted
+  double late_share = 0.5;             ///< of a step's new torque in the turn over that step
   alignas(32) double gravity[4] = {0, 0, 0, 0};
   alignas(32) double move[4] = {1, 1, 1, 0};  ///< directions that may move
   alignas(32) double turn[4] = {1, 1, 1, 0};  ///< axes that may turn

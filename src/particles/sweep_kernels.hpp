@@ -119,6 +119,18 @@ SILT_INLINE void pair_scatter(const PairSweep& sweep, const Block& block, int fi
   }
 }
 
+/// Leaves behind what the contacts of the block exert.
+template <bool extended>
+void keep_trace(const Block& block, double* trace, std::size_t stride, int count) {
+  for (int o = 0; o < count; ++o) {
+    trace[o] = block.noted[o];
+    for (int d = 0; d < 3; ++d) {
+      trace[(1 + d) * stride + o] = block.force[d][o];
+      trace[(4 + d) * stride + o] = extended ? block.torque[d][o] : 0;
+    }
+  }
+}
+
 template <bool periodic, bool extended, bool several>
 void pair_blocks(PairSweep& sweep) {
   Block block;
@@ -130,6 +142,7 @@ void pair_blocks(PairSweep& sweep) {
     pair_kinematics<periodic, extended, several>(sweep, block, first, count);
     laws.run(block, pairs.history + first, pairs.stride, count, sweep.dt);
     pair_scatter<extended>(sweep, block, first, count);
+    if (sweep.trace) keep_trace<extended>(block, sweep.trace + first, pairs.stride, count);
   }
 }
 
@@ -211,6 +224,7 @@ void wall_sweep(WallSweep& sweep) {
       for (int d = 0; d < 3; ++d) block.torque[d][o] = 0;
     }
     laws.run(block, sweep.history + first, sweep.stride, padded, sweep.dt);
+    if (sweep.trace) keep_trace<true>(block, sweep.trace + first, sweep.stride, count);
     for (int o = 0; o < count; ++o) {
       const WallPoint& point = sweep.points[first + o];
       const double* x = sweep.motion[point.particle].position;

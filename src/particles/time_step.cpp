@@ -58,7 +58,9 @@ StepLimit limit_step(const ParticleOptions& options, const Materials& materials,
           fmt::format("-particles_step {:g} s is longer than {:.4g} s, {}; allowed: at most that, 0 (automatic), or "
                       "-particles_step_override yes",
                       options.step, limit.step, limit.reason));
-    limit = {options.step, "given"};
+    limit = {options.step, options.step > limit.step * (1 + 1e-12)
+                               ? fmt::format("given; longer than {:.4g} s, {}", limit.step, limit.reason)
+                               : "given"};
   }
   return limit;
 }

@@ -24,9 +24,11 @@ struct EpsdRolling {
   }
   template <class Real>
   struct Constants {
-    Real rolling_friction, damping_ratio;
+    Real rolling_friction, damping_ratio, least_share;
   };
-  Constants<double> constants(const PairProperties& pair) const { return {pair.rolling_friction, damping_ratio}; }
+  Constants<double> constants(const PairProperties& pair) const {
+    return {pair.rolling_friction, damping_ratio, pair.least_share};
+  }
   template <class Real>
   struct History {
     Real angle[3];  ///< rad, theta as it will be after the rest of the step (share_of_step)
@@ -40,7 +42,8 @@ struct EpsdRolling {
     const Real arm = c.rolling_friction * contact.effective_radius;
     const Real stiffness = Real(2.25) * normal.stiffness * arm * arm, limit = arm * magnitude(normal.force);
     turn_into_plane(history.angle, contact.normal);
-    const Real read = dt * share_of_step(stiffness * dt * dt / contact.rolling_inertia), rest = dt - read;
+    const Real read = dt * share_of_step(c.least_share, stiffness * dt * dt / contact.rolling_inertia),
+               rest = dt - read;
     Real angle[3];
     for (int d = 0; d < 3; ++d) angle[d] = history.angle[d] + read * rate[d];
     const Real trial = stiffness * sqrt(dot(angle, angle));

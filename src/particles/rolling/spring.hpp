@@ -42,10 +42,10 @@ struct SpringRolling {
   struct Constants {
     Real stiffness;  ///< N
     Real neck;       ///< Pa, k_r = stiffness + 4 sqrt(F_c neck/R_eff) a^1.5
-    Real damping, critical_angle;
+    Real damping, critical_angle, least_share;
   };
   Constants<double> constants(const PairProperties& pair) const {
-    return {stiffness.value_or(0), stiffness ? 0 : pair.effective_young / 3, damping, critical_angle};
+    return {stiffness.value_or(0), stiffness ? 0 : pair.effective_young / 3, damping, critical_angle, pair.least_share};
   }
   template <class Real>
   struct History {
@@ -63,7 +63,8 @@ struct SpringRolling {
     // (R_j - R_i)/(R_j + R_i) = 2 R_eff/R_i - 1, also at a wall.
     const Real lever = half * (Real(2.0) * radius / contact.radius - one);
     turn_into_plane(history.displacement, n);
-    const Real read = dt * share_of_step(stiffness * radius * dt * dt / contact.rolling_inertia), rest = dt - read;
+    const Real read = dt * share_of_step(c.least_share, stiffness * radius * dt * dt / contact.rolling_inertia),
+               rest = dt - read;
     Real velocity[3], xi[3];
     for (int d = 0; d < 3; ++d) {
       velocity[d] = zero - radius * rolled[d] - lever * contact.slip[d];

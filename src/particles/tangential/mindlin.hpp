@@ -27,11 +27,12 @@ struct Mindlin {
   template <class Real>
   struct Constants {
     Real stiffness;  ///< Pa, 8 G_eff
-    Real damping_ratio, friction;
+    Real damping_ratio, friction, least_share;
   };
   Constants<double> constants(const PairProperties& pair) const {
     return {8 * pair.effective_shear,
-            damping_ratio.value_or(2 * std::sqrt(pair.effective_shear / pair.effective_young)), pair.friction};
+            damping_ratio.value_or(2 * std::sqrt(pair.effective_shear / pair.effective_young)), pair.friction,
+            pair.least_share};
   }
 
   template <class Real>
@@ -43,7 +44,7 @@ struct Mindlin {
   static SILT_INLINE void force(const Contact<Real>& contact, const NormalLoad<Real>& normal, const Constants<Real>& c,
                                 Real dt, History<Real>& history, Real* force) {
     limited_spring_dashpot(contact, normal.force, c.friction, c.stiffness * normal.contact_radius,
-                           c.damping_ratio * normal.damping, dt, history.spring, force);
+                           c.damping_ratio * normal.damping, c.least_share, dt, history.spring, force);
   }
 };
 

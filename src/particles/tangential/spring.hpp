@@ -26,9 +26,11 @@ struct SpringTangential {
 
   template <class Real>
   struct Constants {
-    Real stiffness, friction;
+    Real stiffness, friction, least_share;
   };
-  Constants<double> constants(const PairProperties& pair) const { return {*stiffness, pair.friction}; }
+  Constants<double> constants(const PairProperties& pair) const {
+    return {*stiffness, pair.friction, pair.least_share};
+  }
 
   template <class Real>
   struct History {
@@ -38,7 +40,8 @@ struct SpringTangential {
   template <class Real>
   static SILT_INLINE void force(const Contact<Real>& contact, const NormalLoad<Real>& normal, const Constants<Real>& c,
                                 Real dt, History<Real>& history, Real* force) {
-    limited_spring_dashpot(contact, normal.force, c.friction, c.stiffness, Real(0.0), dt, history.spring, force);
+    limited_spring_dashpot(contact, normal.force, c.friction, c.stiffness, Real(0.0), c.least_share, dt, history.spring,
+                           force);
   }
 };
 

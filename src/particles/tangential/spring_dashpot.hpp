@@ -29,10 +29,10 @@ struct SpringDashpot {
 
   template <class Real>
   struct Constants {
-    Real stiffness, damping, damping_ratio, friction;
+    Real stiffness, damping, damping_ratio, friction, least_share;
   };
   Constants<double> constants(const PairProperties& pair) const {
-    return {*stiffness, damping.value_or(0), damping ? 0 : damping_ratio, pair.friction};
+    return {*stiffness, damping.value_or(0), damping ? 0 : damping_ratio, pair.friction, pair.least_share};
   }
 
   template <class Real>
@@ -44,7 +44,7 @@ struct SpringDashpot {
   static SILT_INLINE void force(const Contact<Real>& contact, const NormalLoad<Real>& normal, const Constants<Real>& c,
                                 Real dt, History<Real>& history, Real* force) {
     limited_spring_dashpot(contact, normal.force, c.friction, c.stiffness, c.damping + c.damping_ratio * normal.damping,
-                           dt, history.spring, force);
+                           c.least_share, dt, history.spring, force);
   }
 };
 

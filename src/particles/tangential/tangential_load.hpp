@@ -19,14 +19,15 @@ SILT_INLINE void turn_into_plane(Real* spring, const Real* normal) {
 /// spring grown by all of dt V_t is ahead by half a step and damps the oscillation by w dt/4 a radian, one grown by
 /// half is read at the right place (second order) but gains (w dt)^3/8 a radian by the predictor. With w^2 = 7/2
 /// k/m_eff the share 1/2 + (w dt)^2/4 would be neutral; twice that excess leaves a damping of third order, also where
-/// several contacts hold a particle.
+/// several contacts hold a particle. With semi-implicit Euler the velocity is the one that moved the particle over the
+/// whole step, and so is the spring's: `least` is 1 then, else 1/2.
 template <class Real>
-SILT_INLINE Real share_of_step(Real square) {  // of w dt
-  return smaller(Real(0.5) + Real(0.5) * square, Real(1.0));
+SILT_INLINE Real share_of_step(Real least, Real square) {  // of w dt
+  return smaller(least + Real(0.5) * square, Real(1.0));
 }
 template <class Real>
-SILT_INLINE Real share_of_step(Real stiffness, Real mass, Real dt) {
-  return share_of_step(Real(3.5) * stiffness * dt * dt / mass);
+SILT_INLINE Real share_of_step(Real least, Real stiffness, Real mass, Real dt) {
+  return share_of_step(least, Real(3.5) * stiffness * dt * dt / mass);
 }
 
 /// Spring k and dashpot gamma with the Coulomb limit (7.33): force = -(k zeta + gamma V_t), cut to mu |F_n| in length;
@@ -35,9 +36,9 @@ SILT_INLINE Real share_of_step(Real stiffness, Real mass, Real dt) {
 /// plane, as it will be when the rest of the step (see share_of_step) has passed.
 template <class Real>
 SILT_INLINE void limited_spring_dashpot(const Contact<Real>& contact, Real normal_force, Real friction, Real stiffness,
-                                        Real damping, Real dt, Real* spring, Real* force) {
+                                        Real damping, Real least_share, Real dt, Real* spring, Real* force) {
   turn_into_plane(spring, contact.normal);
-  const Real read = dt * share_of_step(stiffness, contact.effective_mass, dt), rest = dt - read;
+  const Real read = dt * share_of_step(least_share, stiffness, contact.effective_mass, dt), rest = dt - read;
   Real trial[3];
   for (int d = 0; d < 3; ++d) {
     spring[d] = spring[d] + read * contact.slip[d];

@@ -34,11 +34,12 @@ struct Twisting {
     Real shear;          ///< Pa, k_q = stiffness + shear a^3
     Real damping;        ///< N m s
     Real damping_ratio;  ///< -, gamma_q = damping + damping_ratio gamma_n a^2
-    Real friction;
+    Real friction, least_share;
   };
   Constants<double> constants(const PairProperties& pair) const {
-    return {stiffness.value_or(0), stiffness ? 0 : 4 * pair.effective_shear, damping.value_or(0),
-            damping ? 0 : std::sqrt(pair.effective_shear / pair.effective_young), pair.friction};
+    return {stiffness.value_or(0), stiffness ? 0 : 4 * pair.effective_shear,
+            damping.value_or(0),   damping ? 0 : std::sqrt(pair.effective_shear / pair.effective_young),
+            pair.friction,         pair.least_share};
   }
 
   template <class Real>
@@ -55,7 +56,7 @@ struct Twisting {
     const Real stiffness = c.stiffness + c.shear * a * a * a;
     const Real damping = c.damping + c.damping_ratio * normal.damping * a * a;
     const Real inertia = Real(0.4) * contact.effective_mass * contact.effective_radius * contact.effective_radius;
-    const Real read = dt * share_of_step(stiffness * dt * dt / inertia);
+    const Real read = dt * share_of_step(c.least_share, stiffness * dt * dt / inertia);
     const Real trial = stiffness * (history.angle + read * rate) + damping * rate;
     const Real limit = Real(2.0 / 3.0) * c.friction * magnitude(normal.force) * a;
     const Real kept = larger(smaller(trial, limit), zero - limit);

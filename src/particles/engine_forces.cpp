@@ -1,0 +1,97 @@
+// What acts on the particles at one moment: contacts, walls, fields.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "particles/engine.hpp"
+
+namespace silt {
+
+void Engine::act_fields(double time, double dt) {
+  FieldStep step{store, periods_, materials, communicator_, time, dt};
+  std::vector<Vec3> contacts_only(store.owned);
+  for (int p = 0; p < store.owned; ++p) contacts_only[p] = vec3(store.present[p].force);
+  if (energy_) energy_->before_fields(store);
+  for (const auto& field : fields_) field->act(step);
+  if (energy_) energy_->after_fields(store);
+  for (int p = 0; p < store.owned; ++p)
+    vec3(store.action[p].field_impulse) += dt * (vec3(store.present[p].force) - contacts_only[p]);
+  field_total_ = step.external;
+  if (plane_) field_total_[2] = 0;
+  field_size_ = step.size;
+}
+
+void Engine::evaluate(double time, double dt) {
+  const LawSetup& setup = laws_.setup();
+  CandidateSweep search;
+  search.motion = store.motion.data();
+  search.periods = periods_;
+  search.enter_gap = setup.enter_gap;
+  contacts.fill(search);
+  kernels_.candidates(search);
+  contacts.enter(search.entering, search.entering_count, store.dummy());
+
+  walls_.points(store.motion.data(), time, wall_contacts.next());
+  wall_contacts.adopt();
+  liquid_.exchange(store, contacts, wall_contacts, periods_);
+
+  PairSweep sweep;
+  sweep.motion = store.motion.data();
+  sweep.load = store.present.data();
+  sweep.pairs = contacts.pairs();
+  sweep.laws = setup;
+  sweep.periods = periods_;
+  sweep.dt = dt;
+  sweep.deepest_share = options_.overlap_limit;
+  sweep.leaving = contacts.leaving();
+  if (energy_) energy_->trace(sweep);
+  kernels_.pairs(sweep);
+  if (sweep.too_deep >= 0) report(options_.deep, describe_deepest(sweep.too_deep));
+  if (!energy_) contacts.leave(sweep.leaving, sweep.leaving_count, store.dummy());
+  leaving_count_ = sweep.leaving_count;
+
+  std::fill(wall_force_sum_.begin(), wall_force_sum_.end(), 0.0);
+  std::fill(wall_torque_sum_.begin(), wall_torque_sum_.end(), 0.0);
+  WallSweep walls;
+  walls.motion = store.motion.data();
+  walls.load = store.present.data();
+  walls.laws = setup;
+  walls.dt = dt;
+  walls.wall_force = reinterpret_cast<double(*)[3]>(wall_force_sum_.data());
+  walls.wall_torque = reinterpret_cast<double(*)[3]>(wall_torque_sum_.data());
+  wall_contacts.fill(walls);
+  if (energy_) energy_->trace(walls);
+  kernels_.walls(walls);
+  wall_total_.setZero();
+  for (std::size_t b = 0; b < wall_force.size(); ++b) {
+    wall_force[b] = vec3(&wall_force_sum_[3 * b]);
+    wall_torque[b] = vec3(&wall_torque_sum_[3 * b]);
+    wall_total_ += wall_force[b];
+  }
+  if (plane_) wall_total_[2] = 0;
+  for (const WallPoint& point : wall_contacts.points()) {
+    const Motion& motion = store.motion[point.particle];
+    if (point.distance < motion.radius) *store.columns.row(last_wall_, point.particle) = point.boundary + 1;
+    if (motion.radius - point.distance > options_.overlap_limit * motion.radius)
+      report(options_.deep,
+             fmt::format("{} overlaps the wall {} by {:.4g} of its radius, limit {:g} (-particles_overlap_limit)",
+                         describe(point.particle), walls_.name(point.boundary), 1 - point.distance / motion.radius,
+                         options_.overlap_limit));
+  }
+  if (!fields_.empty()) act_fields(time, dt);
+}
+
+void Engine::account(double h) {
+  if (!energy_) return;
+  energy_->account({store, contacts, wall_contacts, laws_, periods_, pass(h), fluid_, h});
+  contacts.leave(contacts.leaving(), leaving_count_, store.dummy());
+}
+
+void Engine::correct(double h) {
+  if (options_.late_share() == 0) return;
+  Integration step = pass(h);
+  step.correct = true;
+  kernels_.integrate(step);
+}
+
+}  // namespace silt
