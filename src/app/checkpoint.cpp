@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "app/expectations.hpp"
 #include "app/field_state.hpp"
+#include "app/profiles.hpp"
 
 namespace silt {
 
@@ -40,6 +42,8 @@ void Checkpoint::write(const std::string& path, const RunParts& parts, const Run
   if (parts.coupling) to.note("coupling_diameter", parts.coupling->largest_diameter());
   if (parts.coupling) to.note("coupling_last_step", parts.coupling->last_step());
   if (parts.coupling) save_fields(parts.mesh, "coupling", parts.coupling->state(), to);
+  parts.profiles->save(to);
+  parts.expectations->save(to, clock.time);
   to.write(path);
 }
 
@@ -61,6 +65,8 @@ RunClock Checkpoint::load(const CheckpointReader& from, const RunParts& parts) {
     load_fields(parts.mesh, "coupling", parts.coupling->state(), from);
     parts.coupling->restored(from.number("coupling_diameter"), from.number("coupling_last_step"));
   }
+  parts.profiles->load(from);
+  parts.expectations->load(from);
   return {from.number("time"), from.number("dt"), from.number("shortened"),
           static_cast<long long>(from.number("step"))};
 }

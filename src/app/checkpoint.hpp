@@ -11,6 +11,9 @@
 
 namespace silt {
 
+class Expectations;
+class Profiles;
+
 /// The options `-checkpoint_...`.
 struct CheckpointOptions {
   double interval = 0;
@@ -29,6 +32,8 @@ struct RunParts {
   Fluid* fluid;
   Particles* particles;
   Coupling* coupling;
+  Profiles* profiles;          ///< averages so far
+  Expectations* expectations;  ///< what they have noted so far
 };
 
 /// Where the run's clock stands.

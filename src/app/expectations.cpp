@@ -133,6 +133,30 @@ void Expectations::sample(double time, const Quantities& quantities) {
   }
 }
 
+void Expectations::save(CheckpointWriter& to, double time) const {
+  for (const auto& item : items_) {
+    std::vector<double> rows;
+    for (size_t k = 0; k < item.times.size() && item.times[k] <= time && mpi_rank() == 0; ++k)
+      rows.insert(rows.end(), {item.times[k], item.values[k]});
+    to.add("expect_" + item.name, 2, rows);
+    to.note("expect_" + item.name + "_quantity", item.options.quantity);
+  }
+}
+
+void Expectations::load(const CheckpointReader& from) {
+  for (auto& item : items_) {
+    const std::string name = "expect_" + item.name;
+    if (!from.has(name) || from.text(name + "_quantity") != item.options.quantity) continue;
+    const auto rows = from.numbers(name);
+    item.times.clear();
+    item.values.clear();
+    for (size_t k = 0; k + 1 < rows.size(); k += 2) {
+      item.times.push_back(rows[k]);
+      item.values.push_back(rows[k + 1]);
+    }
+  }
+}
+
 void Expectations::inherit(const Expectations& other) {
   for (size_t k = 0; k < items_.size(); ++k) {
     items_[k].times = other.items_[k].times;

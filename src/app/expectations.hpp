@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/moment.hpp"
+#include "base/checkpoint_file.hpp"
 #include "base/output_directory.hpp"
 
 namespace silt {
@@ -44,6 +45,10 @@ class Expectations {
   void sample(double time, const Quantities& quantities);
   /// Takes over what another one of the same options has noted. Local.
   void inherit(const Expectations& other);
+  /// Puts what was noted until a time into a checkpoint, and goes on from what one holds (of the same quantity).
+  /// Collective.
+  void save(CheckpointWriter& to, double time) const;
+  void load(const CheckpointReader& from);
   /// Prints a line for each figure, `case name expected computed error tolerance PASS|FAIL`, and writes
   /// `expectations.csv`; true when all are met. Collective.
   bool judge(const OutputDirectory& directory, const Probes& probes, const Profiles& profiles) const;

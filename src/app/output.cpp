@@ -84,8 +84,10 @@ void Output::write(const Moment& moment) {
                                  wholes("rank", rank)};
   const Columns& columns = particles.columns();
   for (int c = 0; c < columns.count(); ++c) {
-    const auto& [name, width, ghosts, output, start] = columns.request(c);
-    if (output) arrays.push_back({name, width, std::span(columns.values(c), static_cast<size_t>(count) * width)});
+    const ColumnRequest& column = columns.request(c);
+    if (column.output)
+      arrays.push_back(
+          {column.name, column.width, std::span(columns.values(c), static_cast<size_t>(count) * column.width)});
   }
   particles_->write(moment.time, std::move(arrays));
 }

@@ -106,6 +106,29 @@ void Profiles::sample(const Moment& moment) {
   }
 }
 
+void Profiles::save(CheckpointWriter& to) const {
+  for (const auto& item : items_) {
+    std::vector<double> sums(item.sums.size());
+    MPI_Allreduce(item.sums.data(), sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    sums.insert(sums.end(), {item.time, item.start, 0, 0});
+    if (mpi_rank() > 0) sums.clear();
+    to.add("profile_" + item.name, width, sums);
+  }
+}
+
+void Profiles::load(const CheckpointReader& from) {
+  for (auto& item : items_) {
+    const std::string name = "profile_" + item.name;
+    if (!from.has(name) || from.rows(name) != static_cast<long long>(item.boxes.size()) + 1) continue;
+    auto sums = from.numbers(name);
+    const double time = sums[width * item.boxes.size()], start = sums[width * item.boxes.size() + 1];
+    if (start != item.start) continue;
+    item.time = time;
+    sums.resize(item.sums.size());
+    if (mpi_rank() == 0) item.sums = sums;
+  }
+}
+
 void Profiles::write(const OutputDirectory& directory) {
   for (auto& item : items_) {
     std::vector<double> sums(item.sums.size());

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "app/moment.hpp"
+#include "base/checkpoint_file.hpp"
 #include "base/mesh.hpp"
 #include "base/output_directory.hpp"
 
@@ -28,6 +29,10 @@ class Profiles {
   void sample(const Moment& moment);
   /// Takes over the averages of another one of the same options. Local.
   void inherit(const Profiles& other) { items_ = other.items_; }
+  /// Puts the averages so far into a checkpoint, and goes on from those of one (of profiles of the same name and number
+  /// of boxes). Collective.
+  void save(CheckpointWriter& to) const;
+  void load(const CheckpointReader& from);
   /// Writes the averages so far. Collective.
   void write(const OutputDirectory& directory);
   /// `<profile>.<column>` of every profile.

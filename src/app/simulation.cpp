@@ -113,7 +113,7 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
   now_.fluid = fluid_.get();
   now_.particles = particles_.get();
   if (!restart_) return;
-  const RunClock clock = Checkpoint::load(*restart_, {*mesh_, fluid_.get(), particles_.get(), coupling_.get()});
+  const RunClock clock = Checkpoint::load(*restart_, run_parts());
   now_.time = clock.time, now_.dt = clock.dt, now_.step = clock.step;
   shortened_ = clock.shortened;
 }
@@ -216,6 +216,7 @@ void Simulation::keep_state() {
   constexpr int worth_a_copy = 200;
   if (particles_ && !fluid_ && good_.particles && substeps_since_good_ < worth_a_copy) return;
   if (particles_) good_.particles = particles_->snapshot();
+  good_.profiles = *profiles_;
   good_.clock = {now_.time, now_.dt, shortened_, now_.step};
   substeps_since_good_ = 0;
 }
@@ -248,6 +249,7 @@ std::string Simulation::save_last_good() {
     if (particles_) particles_->restore(*good_.particles);
     now_.time = good_.clock.time, now_.dt = good_.clock.dt, now_.step = good_.clock.step;
     shortened_ = good_.clock.shortened;
+    *profiles_ = *good_.profiles;
     if (now_.time > output_->last()) output_->write(now_);
     write_checkpoint("last_good.h5");
   } catch (const RunError& error) {
@@ -257,10 +259,13 @@ std::string Simulation::save_last_good() {
                      output_->directory().path("last_good.h5"));
 }
 
+RunParts Simulation::run_parts() const {
+  return {*mesh_, fluid_.get(), particles_.get(), coupling_.get(), profiles_.get(), expectations_.get()};
+}
+
 void Simulation::write_checkpoint(const std::string& file) {
   const Stopwatch watch(*this, writing);
-  Checkpoint::write(output_->directory().path(file), {*mesh_, fluid_.get(), particles_.get(), coupling_.get()},
-                    {now_.time, now_.dt, shortened_, now_.step}, costs());
+  Checkpoint::write(output_->directory().path(file), run_parts(), {now_.time, now_.dt, shortened_, now_.step}, costs());
 }
 
 Costs Simulation::costs() const {

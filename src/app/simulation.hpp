@@ -2,6 +2,7 @@
 #include <array>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "app/balance.hpp"
@@ -75,6 +76,7 @@ class Simulation {
   void attempt();
   void report();
   void write_checkpoint(const std::string& file);
+  RunParts run_parts() const;
   void keep_state();
   bool uneven();
   Costs costs() const;
@@ -112,6 +114,7 @@ class Simulation {
   /// A state to go back to.
   struct Good {
     std::shared_ptr<const Particles::Snapshot> particles;
+    std::optional<Profiles> profiles;
     RunClock clock;
   };
   Good good_;

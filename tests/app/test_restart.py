@@ -28,6 +28,8 @@ wall:
   paddle: {type: box, side: outside, lower: [0.010, 0, 0.012], upper: [0.014, 0.012, 0.014], rotation_axis: [0, 1, 0], rotation_rate: "10"}
 insertion:
   bed: {type: fill, material: bead, diameter: 1.5e-3, count: 250, lower: [0, 0, 0], upper: [0.024, 0.012, 0.018]}
+profile: {layers: {from: [0.012, 0.006, 0.003], to: [0.012, 0.006, 0.015], size: [0.024, 0.012, 0.006], points: 3, start: 0.005}}
+expect: {swing: {quantity: particle_kinetic_energy, statistic: mean, window: [0.005, 0.04], value: 1.0, tolerance: 1.0e9}}
 output: {directory: out, interval: 0.01}
 checkpoint: {interval: 0.02}
 progress: {quiet: yes}
@@ -107,6 +109,13 @@ class Folder:
         with h5py.File(sorted(glob.glob(self.file(directory, "fluid", "0*.h5")))[-1]) as file:
             return {name: file[name][...] for name in ("velocity", "pressure", "void_fraction")}
 
+    def numbers(self, table):
+        return np.loadtxt(self.file("out", table), delimiter=",", skiprows=1)
+
+    def figure(self):
+        with open(self.file("out", "expectations.csv")) as file:
+            return float(next(csv.DictReader(file))["computed"])
+
     def times(self, table="diagnostics.csv"):
         with open(self.file("out", table)) as file:
             return [float(row["time"]) for row in csv.DictReader(file)]
@@ -146,6 +155,11 @@ def main():
                         check(f"{label}: fluid {array} as without interruption", far <= allowed, f"{far:.2g}")
                 for table in ("diagnostics.csv", "ledger.csv", "walls.csv"):
                     check(f"{label}: {table} is continued", parts.times(table) == whole.times(table))
+                if name == "grains":
+                    averages = [f.numbers("profile_layers.csv") for f in (whole, parts)]
+                    check(f"{label}: averages go on", np.allclose(*averages, rtol=1e-10 if allowed == 0 else 1e-4, atol=1e-12), str(averages))
+                    figures = [f.figure() for f in (whole, parts)]
+                    check(f"{label}: what is expected covers the whole run", abs(figures[0] / figures[1] - 1) < 1e-6, str(figures))
                 xdmf = [open(f.file("out", "particles.xdmf")).read().count("<Time") for f in (whole, parts)]
                 check(f"{label}: the series is continued", xdmf[0] == xdmf[1], str(xdmf))
             one = parts.last()
