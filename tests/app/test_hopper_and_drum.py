@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+# processors: 2
+"""The hopper (STL) and the rotating drum of `inputs/`, smaller and shorter, on one and two ranks: grains run out at the rate
+of Beverloo, Leniger & van de Velde 1961, the bed climbs with the drum at its angle of repose, no grain is lost, the ledger
+of every step closes, and both rank counts agree."""
+import csv
+import glob
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+HOPPER = ["-insertion_spheres_count", "2500", "-wall_lid_velocity", "(t > 0.2) ? 1 : 0, 0, 0", "-time_end", "0.75", "-output_interval", "0.75"]
+DRUM = ["-insertion_bed_count", "1000", "-time_end", "0.6", "-settle_time", "0.15", "-output_interval", "0.6"]
+
+
+class Run:
+    def __init__(self, silt, case, options, ranks):
+        with tempfile.TemporaryDirectory(prefix="silt_grains_") as folder:
+            command = (["mpiexec", "-n", str(ranks)] if ranks > 1 else []) + [silt, os.path.join(ROOT, "inputs", case), *options, "-output_directory", folder + "/out", "-progress_quiet", "yes"]
+            done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+            self.finished = done.returncode == 0 or (done.returncode == 1 and " FAIL" in done.stdout)  # the rate is that of the whole run
+            if not self.finished:
+                sys.exit(f"{case}, {ranks} ranks: exit code {done.returncode}\n" + done.stdout[-1500:])
+            self.diagnostics, self.ledger = (self.table(folder, name) for name in ("diagnostics.csv", "ledger.csv"))
+            with h5py.File(sorted(glob.glob(os.path.join(folder, "out", "particles", "*.h5")))[-1]) as file:
+                self.position, self.id = file["position"][...], file["id"][...]
+
+    @staticmethod
+    def table(folder, name):
+        with open(os.path.join(folder, "out", name)) as file:
+            rows = list(csv.DictReader(file))
+        return {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
+
+    def slope(self, column, low, high):
+        t = self.diagnostics["time"]
+        chosen = (t >= low) & (t <= high)
+        return np.polyfit(t[chosen], self.diagnostics[column][chosen], 1)[0]
+
+
+def main():
+    silt = os.path.abspath(sys.argv[1])
+    faults = 0
+
+    def check(label, good, said):
+        nonlocal faults
+        faults += not good
+        print(f"{'ok  ' if good else 'FAIL'} {label}: {said}")
+
+    rates, leans = [], []
+    for ranks in (1, 2):
+        run = Run(silt, "hopper.yaml", HOPPER, ranks)
+        rate = 2500 * 4 / 3 * math.pi * 0.002**3 * run.slope("removed", 0.35, 0.7)
+        expected = 0.58 * 0.58 * 2500 * math.sqrt(9.81) * (0.028 - 1.4 * 0.004) ** 2.5
+        rates.append(rate)
+        check(f"hopper, {ranks} ranks: Beverloo", abs(rate / expected - 1) < 0.1, f"{rate:.4f} kg/s, expected {expected:.4f}")
+        gone = run.diagnostics["removed"][-1]
+        check(f"hopper, {ranks} ranks: every grain is accounted for", gone + len(run.id) == 2500 and len(set(run.id)) == len(run.id), f"{gone:g} + {len(run.id)}")
+        check(f"hopper, {ranks} ranks: the ledger closes", run.ledger["residual"].max() < 1e-10, f"{run.ledger['residual'].max():.2g}")
+
+        run = Run(silt, "rotating_drum.yaml", DRUM, ranks)
+        x, z = run.position[:, 0], run.position[:, 2]
+        lean = math.degrees(math.atan2(-x.mean(), -z.mean()))
+        leans.append(lean)
+        check(f"drum, {ranks} ranks: the bed leans with the wall by its angle of repose", 20 < lean < 50, f"{lean:.1f} degrees")
+        check(f"drum, {ranks} ranks: all grains are in the drum", len(run.id) == 1000 and np.hypot(x, z).max() < 0.05 - 0.0014, f"{np.hypot(x, z).max():.5f} m")
+        check(f"drum, {ranks} ranks: the ledger closes", run.ledger["residual"].max() < 1e-10, f"{run.ledger['residual'].max():.2g}")
+    check("hopper: as many grains a second on two ranks", abs(rates[1] / rates[0] - 1) < 0.06, f"{rates[0]:.4f} {rates[1]:.4f} kg/s")
+    check("drum: the same slope on two ranks", abs(leans[1] - leans[0]) < 3, f"{leans[0]:.1f} {leans[1]:.1f} degrees")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
