@@ -23,8 +23,8 @@ struct ColumnRequest {
   int width = 1;     ///< doubles a particle
   GhostValues ghosts = GhostValues::none;
   bool output = true;                                        ///< written to the particle series
-  bool needed = true;                                        ///< a restart refuses a file without it, else zero
   std::function<void(const Seed&, double* row)> start = {};  ///< value of a new particle; zero without it
+  bool needed = true;                                        ///< a restart refuses a file without it, else zero
 };
 
 /// The named columns of a run. Models register theirs before the first step; without any there is nothing to store or

@@ -43,11 +43,47 @@ void ContactLists::gather(const Store& store, ContactMemory& memory) const {
   });
 }
 
-void ContactLists::add_candidate(int i, int j) {
+void ContactLists::sort_candidates() {
+  candidates_ = static_cast<int>(unsorted_.size());
   candidate_i_.reserve(static_cast<std::size_t>(candidates_) + 2 * pad_to);
   candidate_j_.reserve(static_cast<std::size_t>(candidates_) + 2 * pad_to);
-  candidate_i_[candidates_] = i;
-  candidate_j_[candidates_++] = j;
+  int at[groups + 1] = {};
+  for (const Unsorted& pair : unsorted_) ++at[pair.group + 1];
+  for (int g = 0; g < groups; ++g) at[g + 1] += at[g];
+  for (int g = 0; g <= groups; ++g) start_[g] = at[g];
+  for (const Unsorted& pair : unsorted_) {
+    const int k = at[pair.group]++;
+    candidate_i_[k] = pair.i;
+    candidate_j_[k] = pair.j;
+  }
+}
+
+void ContactLists::put_nearest(int i, int j) {
+  candidate_i_.reserve(static_cast<std::size_t>(candidates_) + 2 * pad_to);
+  candidate_j_.reserve(static_cast<std::size_t>(candidates_) + 2 * pad_to);
+  // The first of every further group moves behind its last, which makes room at the end of the nearest.
+  int hole = candidates_++;
+  for (int g = groups - 1; g > 0; --g) {
+    candidate_i_[hole] = candidate_i_[start_[g]];
+    candidate_j_[hole] = candidate_j_[start_[g]];
+    hole = start_[g]++;
+  }
+  candidate_i_[hole] = i;
+  candidate_j_[hole] = j;
+}
+
+void ContactLists::take_out(int place) {
+  int group = 0;
+  while (group + 1 < groups && start_[group + 1] <= place) ++group;
+  // The last of its group takes its place, and so on in every further group.
+  for (int hole = place; group < groups; ++group) {
+    const int last = (group + 1 < groups ? start_[group + 1] : candidates_) - 1;
+    candidate_i_[hole] = candidate_i_[last];
+    candidate_j_[hole] = candidate_j_[last];
+    hole = last;
+    if (group + 1 < groups) --start_[group + 1];
+  }
+  --candidates_;
 }
 
 void ContactLists::add_contact(int i, int j, const double* history, std::size_t history_step) {
@@ -83,9 +119,11 @@ void ContactLists::pad(int dummy) {
 
 PairArrays ContactLists::pairs() { return {contacts_, contact_i_.data(), contact_j_.data(), history_.data(), stride_}; }
 
-void ContactLists::fill(CandidateSweep& sweep) {
+void ContactLists::fill(CandidateSweep& sweep, double moved) {
   if (static_cast<int>(places_.size()) < candidates_ + pad_to) places_.resize(candidates_ + candidates_ / 4 + pad_to);
-  sweep.count = candidates_;
+  // Both may have moved; the share of a group is rounded up.
+  const double reached = 2 * moved * groups + 1e-6;
+  sweep.count = reached < groups - 1 ? start_[static_cast<int>(reached) + 1] : candidates_;
   sweep.i = candidate_i_.data();
   sweep.j = candidate_j_.data();
   sweep.entering = places_.data();
@@ -102,9 +140,7 @@ void ContactLists::enter(const int* places, int count, int dummy) {
   for (int e = count - 1; e >= 0; --e) {  // from the back, so that the last one moved in is never one of those to move
     const int k = places[e];
     add_contact(candidate_i_[k], candidate_j_[k], nullptr, 0);
-    --candidates_;
-    candidate_i_[k] = candidate_i_[candidates_];
-    candidate_j_[k] = candidate_j_[candidates_];
+    take_out(k);
   }
   pad(dummy);
 }
@@ -113,7 +149,7 @@ void ContactLists::leave(const int* places, int count, int dummy) {
   if (count == 0) return;
   for (int e = count - 1; e >= 0; --e) {
     const int k = places[e];
-    add_candidate(contact_i_[k], contact_j_[k]);
+    put_nearest(contact_i_[k], contact_j_[k]);
     --contacts_;
     contact_i_[k] = contact_i_[contacts_];
     contact_j_[k] = contact_j_[contacts_];

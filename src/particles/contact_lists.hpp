@@ -39,18 +39,33 @@ class ContactLists {
   double history(int component, int contact) const { return history_[component * stride_ + contact]; }
   int components() const { return components_; }
 
+  /// Candidates stand in groups of growing gap: those of group g are at least g/groups of the skin from touching, so
+  /// that they need no test before two particles together may have moved that far.
+  static constexpr int groups = 16;
+
   /// What the contacts remember, for every owned particle of the store the lists belong to.
   void gather(const Store& store, ContactMemory& memory) const;
-  void clear() { contacts_ = candidates_ = 0; }
-  void add_candidate(int i, int j);
+  void clear() {
+    contacts_ = candidates_ = 0;
+    unsorted_.clear();
+    for (int& start : start_) start = 0;
+  }
+  /// A pair for sort_candidates(); `gap` is what it lacks to a contact, as a share of the skin.
+  void add_candidate(int i, int j, double gap) {
+    const int group = static_cast<int>(gap * groups);
+    unsorted_.push_back({i, j, group < 0 ? 0 : group >= groups ? groups - 1 : group});
+  }
+  /// Makes the added pairs the candidates, by group and in the order in which they were added.
+  void sort_candidates();
   /// With the history it had, or null for a new contact.
   void add_contact(int i, int j, const double* history, std::size_t history_step);
 
   /// Pads the lists to whole packs with the dummy pair (dummy, dummy + 1).
   void pad(int dummy);
   PairArrays pairs();
-  /// Fills in the candidates' arrays and room for their answer.
-  void fill(CandidateSweep& sweep);
+  /// Fills in the candidates that may touch once no particle has moved further than this share of the skin, and room
+  /// for the answer.
+  void fill(CandidateSweep& sweep, double moved);
   int* leaving();
   /// Moves the candidates at the places found by the sweep to the contacts, and those contacts that ended back.
   void enter(const int* places, int count, int dummy);
@@ -60,10 +75,17 @@ class ContactLists {
   void reserve_contacts(int count);
   void pad_contacts(int dummy);
   void pad_candidates(int dummy);
+  void put_nearest(int i, int j);
+  void take_out(int place);
 
   int components_, contacts_ = 0, candidates_ = 0;
   std::size_t stride_ = 0;
   Aligned<int> contact_i_, contact_j_, candidate_i_, candidate_j_;
+  int start_[groups + 1] = {};  ///< of each group; the last entry is not kept
+  struct Unsorted {
+    int i, j, group;
+  };
+  std::vector<Unsorted> unsorted_;
   Aligned<double> history_;  ///< [components][stride]
   std::vector<int> places_;
 };

@@ -146,7 +146,7 @@ void Engine::add(const std::vector<Seed>& seeds) {
   speed_ = options_.speed.value_or(std::max(mpi_max(fastest), fall));
   choose_step();
 
-  skin_ = options_.skin > 0 ? options_.skin : 0.2 * largest_radius_;
+  skin_ = options_.skin > 0 ? options_.skin : std::max(skin_, 0.2 * largest_radius_);
   const double reach = 2 * largest_radius_ + laws_.setup().leave_gap + skin_;
   for (int d = 0; d < 3; ++d)
     if (mesh.periodic[d] && periods_.length[d] < 2 * reach)
@@ -170,6 +170,7 @@ void Engine::choose_step() {
 
 void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   ++rebuilds_;
+  if (within_step) adapt_skin();
   if (fluid_) collect_fluid();
   std::string fast;
   if (within_step)
@@ -210,7 +211,10 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   store.reserve(store.all());
   store.place_dummies();
   // A wet pair that has just passed the gap gives its liquid back before it is forgotten.
-  find_pairs(grid, store, periods_, gap + skin_, liquid_.active() ? gap + skin_ : gap, memory_, contacts);
+  find_pairs(grid, store, periods_, {laws_.setup().enter_gap, gap, skin_, liquid_.active() ? gap + skin_ : gap},
+             memory_, contacts);
+  travel_ = 0;
+  steps_since_rebuild_ = 0;
   contacts.pad(store.dummy());
   wall_contacts.restore(wall_memory_);
   detached_ = false;
@@ -219,6 +223,35 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
     for (int d = 0; d < 3; ++d) store.origin[p].entry[d] = store.motion[p].position[d];
   if (fluid_ && within_step) prepare_fluid(h);
   sum_up();
+}
+
+/// The bound on how far particles have come grows with the fastest of each step; before the lists are made anew, the
+/// distances from where they were made are looked at.
+bool Engine::out_of_lists() {
+  if (travel_ <= 0.5 * skin_) return false;
+  double largest = 0;
+  for (int p = 0; p < store.owned; ++p) {
+    double square = 0;
+    for (int d = 0; d < 3; ++d) {
+      const double moved = store.motion[p].position[d] - store.origin[p].entry[d];
+      square += moved * moved;
+    }
+    largest = std::max(largest, square);
+  }
+  if (mpi_size() > 1) MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator_);
+  travel_ = std::min(travel_, std::sqrt(largest));
+  return travel_ > 0.45 * skin_;
+}
+
+/// Where particles run, a wider skin costs less than the lists it saves (candidates are tested only once they may
+/// touch).
+void Engine::adapt_skin() {
+  constexpr int seldom = 60;
+  if (options_.skin > 0 || steps_since_rebuild_ >= seldom) return;
+  double widest = 0.5 * largest_radius_;
+  for (const double length : periods_.length)
+    if (length > 0) widest = std::min(widest, 0.5 * length - 2 * largest_radius_ - laws_.setup().leave_gap);
+  skin_ = std::max(skin_, std::min(1.25 * skin_, widest));
 }
 
 void Engine::sum_up() {
@@ -237,7 +270,6 @@ Integration Engine::pass(double h) {
   step.previous = store.previous.data();
   step.drag = fluid_ ? store.drag.data() : nullptr;
   step.turning = turning_ ? store.turning.data() : nullptr;
-  step.origin = reinterpret_cast<const double(*)[4]>(store.origin.data());
   step.count = store.owned;
   step.dt = h;
   step.late_share = options_.late_share();
@@ -301,16 +333,18 @@ ParticleStep Engine::advance(double time, double dt) {
     step.correct = s > 0 && late > 0 && !energy_;
     step.drift = true;
     kernels_.integrate(step);
-    if (brownian_.active() && fluid_) step.largest_square = brownian_.act(store, step, time + (s + 1) * h);
+    double farthest = travel_ + std::sqrt(step.largest_square);
+    if (brownian_.active() && fluid_) farthest = std::sqrt(brownian_.act(store, step, time + (s + 1) * h));
     store.present.swap(store.previous);
     if (!std::isfinite(step.check)) trouble_ = find_bad();
     move_walls(time + s * h, h);
-    int state = !trouble_.empty()                                                            ? 2
-                : step.largest_square > 0.25 * skin_ * skin_ || walls_.moved() > 0.5 * skin_ ? 1
-                                                                                             : 0;
-    if (!alone) MPI_Allreduce(MPI_IN_PLACE, &state, 1, MPI_INT, MPI_MAX, communicator_);
-    if (state == 2) stop_if_any(trouble_);
-    if (state == 1)
+    ++steps_since_rebuild_;
+    // Whether anything is wrong, whether a wall has left its list, how far any particle may have come.
+    double state[3] = {double(!trouble_.empty()), double(walls_.moved() > 0.5 * skin_), farthest};
+    if (!alone) MPI_Allreduce(MPI_IN_PLACE, state, 3, MPI_DOUBLE, MPI_MAX, communicator_);
+    travel_ = state[2];
+    if (state[0] > 0) stop_if_any(trouble_);
+    if (state[1] > 0 || out_of_lists())
       rebuild(store.previous, true, h);
     else
       halo_.forward(store);
@@ -329,6 +363,10 @@ ParticleStep Engine::advance(double time, double dt) {
   }
   if (!energy_) correct(h);
   collect_fluid();
+  // The positions of each step have been looked at; now the velocities that the last forces left.
+  double speeds = 0;
+  for (int p = 0; p < store.owned; ++p) speeds += vec3(store.motion[p].velocity).squaredNorm();
+  if (!std::isfinite(speeds)) trouble_ = find_bad();
   stop_if_any(trouble_);
   advanced_ = !settling_;
   if (!migration_.all_at_home(store)) {

@@ -108,6 +108,8 @@ class Engine {
   void collect_fluid();
   void start(double time);
   void rebuild(Aligned<Load>& carried, bool within_step, double h);
+  bool out_of_lists();
+  void adapt_skin();
   void depart(const std::vector<Gone>& gone, bool within_step, double h);
   void evaluate(double time, double dt);
   /// Takes the work of the step that evaluate() ended, and lets go of the contacts that ended with it.
@@ -164,6 +166,8 @@ class Engine {
   std::unique_ptr<EnergyLedger> energy_;
   Periods periods_;
   double skin_ = 0, largest_radius_ = 0;
+  double travel_ = 0;  ///< m, no particle of any rank is further from where the lists were made
+  int steps_since_rebuild_ = 0;
   SmallestRadii smallest_;
   std::int64_t next_id_ = 0;
   bool settling_ = false;

@@ -27,7 +27,7 @@ void Engine::evaluate(double time, double dt) {
   search.motion = store.motion.data();
   search.periods = periods_;
   search.enter_gap = setup.enter_gap;
-  contacts.fill(search);
+  contacts.fill(search, travel_ / skin_);
   kernels_.candidates(search);
   contacts.enter(search.entering, search.entering_count, store.dummy());
 

@@ -64,8 +64,8 @@ void integrate_all(Integration& step) {
         const Quad mean = every(h) * (spin - every(step.late_share) * turned);
         turn_by(step.orientation[p], mean[0], mean[1], mean[2]);
       }
+      const Quad moved = position - quad(motion.position);
       *reinterpret_cast<Quad*>(motion.position) = position;
-      const Quad moved = position - quad(step.origin[p]);
       const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
       largest = largest > square ? largest : square;
       check += square;

@@ -105,9 +105,11 @@ inline double image(double distance, double length, double inverse) {
 
 }  // namespace
 
-void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, double reach, double memory_gap,
+void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, const PairReach& pair_reach,
                 const ContactMemory& memory, ContactLists& lists) {
   lists.clear();
+  const double memory_gap = pair_reach.memory_gap, enter_gap = pair_reach.enter_gap, skin = pair_reach.skin;
+  const double reach = pair_reach.leave_gap + skin;
   const Bins own(grid, store, 0, store.owned), ghosts(grid, store, store.owned, store.all());
   std::vector<int> found(64);
   std::vector<double> squares(64);
@@ -124,7 +126,7 @@ void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods
         return;
       }
     }
-    lists.add_candidate(i, j);
+    lists.add_candidate(i, j, (std::sqrt(square) - store.motion[a].radius - store.motion[b].radius - enter_gap) / skin);
   };
   const auto search = [&](const Bins& bins, int begin, int end, const Motion& motion, int& n) {
     if (static_cast<int>(found.size()) < n + end - begin)
@@ -168,6 +170,7 @@ void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods
       for (int k = 0; k < n; ++k) remember(p, ghosts.index[found[k]], squares[k]);
     }
   }
+  lists.sort_candidates();
 }
 
 }  // namespace silt

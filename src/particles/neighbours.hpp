@@ -39,10 +39,15 @@ class CellGrid {
 /// Sorts the owned particles along the cells of a grid (locality) and returns the order for Store::reorder.
 std::vector<int> order_along(const CellGrid& grid, const Store& store);
 
+/// Gaps between surfaces (m): at which a pair becomes a contact and ceases to be one, to which pairs are listed beyond
+/// that, and below which a pair with a history still is a contact.
+struct PairReach {
+  double enter_gap = 0, leave_gap = 0, skin = 0, memory_gap = 0;
+};
+
 /// Fills the lists with all pairs of an owned particle and a particle of higher local index (owned or ghost) nearer
-/// than R_i + R_j + reach; those with a history are contacts while their gap is below `memory_gap`. Requires owned
-/// particles sorted along the grid.
-void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, double reach, double memory_gap,
+/// than leave_gap + skin. Requires owned particles sorted along the grid.
+void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, const PairReach& pair_reach,
                 const ContactMemory& memory, ContactLists& lists);
 
 }  // namespace silt

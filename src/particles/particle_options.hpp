@@ -27,7 +27,9 @@ struct ParticleOptions {
     option("speed", speed, "m/s",
            "largest collision speed expected; default: the larger of the fastest start and a fall through the domain",
            positive);
-    option("skin", skin, "m", "neighbours are listed this much beyond touching; 0: a tenth of the largest diameter",
+    option("skin", skin, "m",
+           "neighbours are listed this much beyond touching; 0: a tenth of the largest diameter, up to a quarter where "
+           "particles run",
            non_negative);
     option("overlap_limit", overlap_limit, "-", "overlap that is too deep, as a share of the smaller radius",
            Range{0, 1, true, false});

@@ -118,7 +118,6 @@ struct Integration {
   Load *present = nullptr, *previous = nullptr;  ///< forces at the present positions; those of the step before
   DragStep* drag = nullptr;                      ///< null: no fluid
   const TurnStep* turning = nullptr;             ///< null: no viscous torque; only with drag
-  const double (*origin)[4] = nullptr;           ///< m, positions at the last rebuild
   int count = 0;
   double dt = 0;
   double second = 0;                   ///< s2, how far a unit acceleration moves a particle without drag
@@ -128,7 +127,7 @@ struct Integration {
   alignas(32) double move[4] = {1, 1, 1, 0};  ///< directions that may move
   alignas(32) double turn[4] = {1, 1, 1, 0};  ///< axes that may turn
   bool correct = false, drift = false;
-  double largest_square = 0;  ///< out: m2, largest squared displacement since the last rebuild
+  double largest_square = 0;  ///< out: m2, largest squared displacement in this step
   double check = 0;           ///< out: finite when every displacement is
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 BoxCase elastic_gas() {
   BoxCase setup;
-  setup.box(Vec3::Zero(), Vec3::Constant(8e-3)).periodic();
+  setup.box(Vec3::Zero(), Vec3::Constant(12e-3)).periodic();
   setup.set("material_bead_young_modulus", "1e6").set("material_bead_restitution", "1");
   setup.set("material_bead_friction", "0").set("particles_energy", "yes");
   return setup;
@@ -23,7 +23,7 @@ double energy_error(double share, int automatic_steps, const std::string& integr
   setup.set("particles_step_fraction", std::to_string(0.05 * share)).set("particles_integrator", integrator);
   setup.set("particles_rayleigh_fraction", std::to_string(0.2 * share)).set("particles_speed", "0.6");
   BoxRun run(setup);
-  run.particles.add(gas(4, Vec3::Zero(), Vec3::Constant(8e-3), 0.85e-3, 0.3));
+  run.particles.add(gas(6, Vec3::Zero(), Vec3::Constant(12e-3), 0.85e-3, 0.3));
   const double h = run.particles.time_step() / share, start = run.particles.energy_account().kinetic;
   double largest = 0;
   for (int n = 0; n < automatic_steps; ++n) {

@@ -56,7 +56,8 @@ TEST_CASE("a sliding contact carries mu F_n, and its spring is what that force n
   contact.slip[1] = 0.2;
   const double step = 1e-6, friction = 0.3, normal = 2e-3;
   double spring[3] = {}, force[3];
-  for (int n = 0; n < 200; ++n) limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, 0.5, step, spring, force);
+  for (int n = 0; n < 200; ++n)
+    limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, 0.5, step, spring, force);
   CHECK(force[1] == Approx(-friction * normal).epsilon(1e-12));
   CHECK(spring[1] == Approx(friction * normal / stiffness).epsilon(0.02));
   // It turns back at once: the force falls by k V dt in a step.
