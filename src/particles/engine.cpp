@@ -176,7 +176,8 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   if (within_step)
     for (int p = 0; p < store.owned && fast.empty(); ++p)
       if (h * vec3(store.motion[p].velocity).norm() > store.motion[p].radius)
-        fast = fmt::format("{} moves more than its radius in a step of {:g} s (-particles_fast)", describe(p), h);
+        fast = fmt::format("a particle moves more than its radius in a step of {:g} s (-particles_fast): {}", h,
+                           describe(p));
   if (options_.fast == "stop")
     stop_if_any(fast);
   else

@@ -80,8 +80,10 @@ void Engine::report(const std::string& option, const std::string& text) {
 
 std::string Engine::describe_deepest(int contact) const {
   const int i = contacts.contact_i()[contact], j = contacts.contact_j()[contact];
-  return fmt::format("{} overlaps another by more than {:g} of the smaller radius (-particles_overlap_limit): {}",
-                     describe(i), options_.overlap_limit, describe(j));
+  return fmt::format(
+      "a particle overlaps another by more than {:g} of the smaller radius (-particles_overlap_limit): {}; the other "
+      "is {}",
+      options_.overlap_limit, describe(i), describe(j));
 }
 
 void Engine::take_sizes() {

@@ -74,9 +74,10 @@ void Engine::evaluate(double time, double dt) {
     if (point.distance < motion.radius) *store.columns.row(last_wall_, point.particle) = point.boundary + 1;
     if (motion.radius - point.distance > options_.overlap_limit * motion.radius)
       report(options_.deep,
-             fmt::format("{} overlaps the wall {} by {:.4g} of its radius, limit {:g} (-particles_overlap_limit)",
-                         describe(point.particle), walls_.name(point.boundary), 1 - point.distance / motion.radius,
-                         options_.overlap_limit));
+             fmt::format(
+                 "a particle overlaps the wall {} by {:.4g} of its radius, limit {:g} (-particles_overlap_limit): {}",
+                 walls_.name(point.boundary), 1 - point.distance / motion.radius, options_.overlap_limit,
+                 describe(point.particle)));
   }
   if (!fields_.empty()) act_fields(time, dt);
 }

@@ -98,7 +98,7 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
     if (one.boundary < 0 || open || walls_.role(one.boundary) == BoundaryRole::wall) {
       ++lost;
       if (text.empty())
-        text = fmt::format("lost {} has passed {}{}", describe(one),
+        text = fmt::format("lost {}; it has passed {}{}", describe(one),
                            one.boundary < 0 ? "no boundary"
                            : open           ? "the open boundary "
                                             : "the wall ",
