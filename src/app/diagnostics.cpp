@@ -32,6 +32,9 @@ const std::vector<std::string> particle_columns = {"particles",
                                                    "substeps",
                                                    "contacts",
                                                    "largest_overlap",
+                                                   "fabric_x",
+                                                   "fabric_y",
+                                                   "fabric_z",
                                                    "bed_height",
                                                    "bed_height_95",
                                                    "bed_solids",
@@ -126,7 +129,8 @@ void Diagnostics::sample(const Moment& moment, Quantities& quantities) {
   if (with_particles_) {
     const ParticleStep& step = moment.particle_step;
     for (double value : {static_cast<double>(moment.particles->total()), static_cast<double>(step.removed),
-                         static_cast<double>(step.substeps), static_cast<double>(step.contacts), step.largest_overlap})
+                         static_cast<double>(step.substeps), static_cast<double>(step.contacts), step.largest_overlap,
+                         step.fabric[0], step.fabric[1], step.fabric[2]})
       row.push_back(value);
     measure_particles(*moment.particles, row);
   }

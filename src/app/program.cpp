@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/options.hpp"
 #include "base/petsc.hpp"
+#include "particles/law_table.hpp"
 
 namespace silt {
 namespace {
@@ -90,6 +91,12 @@ int answer(const std::vector<std::string>& arguments) {
   }
   if (options.find("models_page")) {
     if (talk) fmt::print("{}", model_page());
+    return 0;
+  }
+  if (options.given("law_table_motion")) {
+    const std::string table = law_table(options);
+    options.refuse_unknown(&catalogue());
+    if (talk) fmt::print("{}", table);
     return 0;
   }
   const bool check = options.find("check").has_value();

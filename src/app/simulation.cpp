@@ -73,6 +73,9 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
   mesh_ = std::make_unique<Mesh>(mesh, restart_ ? partition_of(*restart_, carried_ != nullptr) : Partition{});
   refuse_unknown_boundaries(*mesh_, options);
   fluid_ = Fluid::create(*mesh_, options, case_.gravity);
+  // The films between near particles are of the fluid that carries them.
+  if (fluid_ && options.find("lubrication_type") && !options.find("lubrication_viscosity"))
+    options.set("lubrication_viscosity", fmt::format("{}", fluid_->viscosity()), "-fluid_viscosity");
   particles_ = Particles::create(*mesh_, options, case_.gravity, restart_ != nullptr);
   if (!fluid_ && !particles_)
     throw UserError("there is neither a fluid (-fluid_type) nor a particle (-insertion_<name>_...) to run");

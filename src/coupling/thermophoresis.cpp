@@ -27,7 +27,6 @@ std::string Thermophoresis::name() const {
 }
 
 void Thermophoresis::act(const Fluid& fluid, const Filter& filter, const Kernel& kernel, Particles& particles) {
-  constexpr double avogadro = 6.02214076e23;
   const auto temperature = fluid.temperature();
   gradient_.apply(temperature, 1, slope_);
   nodal_.resize(4 * static_cast<std::size_t>(mesh_.nodes));
@@ -51,7 +50,7 @@ void Thermophoresis::act(const Fluid& fluid, const Filter& filter, const Kernel&
                               f[0],
                               options_.mean_free_path,
                               options_.conductivity_ratio,
-                              options_.molar_mass / avogadro};
+                              options_.molar_mass / avogadro_constant};
           const Vec3 force = -law.factor(gas) * vec3(f + 1);
           FluidAction& action = particles.fluid_action(p);
           vec3(action.force) += force;

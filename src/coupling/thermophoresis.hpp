@@ -8,6 +8,7 @@
 #include "base/expression.hpp"
 #include "base/models.hpp"
 #include "base/nodal_gradient.hpp"
+#include "base/physical_constants.hpp"
 #include "coupling/filter.hpp"
 #include "coupling/kernel.hpp"
 #include "fluid/fluid.hpp"
@@ -21,11 +22,10 @@ struct GasAround {
   double mean_free_path;                             ///< m
   double conductivity_ratio;                         ///< k, gas over particle
   double molecule;                                   ///< kg, mass of a gas molecule
-  static constexpr double boltzmann = 1.380649e-23;  ///< J/K
   /// m/s, mean speed of the molecules c = (8 k_B T/(pi m_g))^1/2.
-  double speed() const { return std::sqrt(8 * boltzmann * temperature / (std::numbers::pi * molecule)); }
+  double speed() const { return std::sqrt(8 * boltzmann_constant * temperature / (std::numbers::pi * molecule)); }
   /// W/(m K), of the molecules' translation: 15/4 k_B mu/m_g.
-  double translational_conductivity() const { return 15.0 / 4 * boltzmann * viscosity / molecule; }
+  double translational_conductivity() const { return 15.0 / 4 * boltzmann_constant * viscosity / molecule; }
   double knudsen() const { return mean_free_path / diameter; }
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/philox.hpp"
+#include "base/physical_constants.hpp"
 
 namespace silt {
 namespace {
@@ -17,10 +18,12 @@ double rest_variance(double z) {
 
 }  // namespace
 
-double Brownian::speed(double mass) const { return 3 * std::sqrt(3 * boltzmann * options_.temperature / mass); }
+double Brownian::speed(double mass) const {
+  return 3 * std::sqrt(3 * boltzmann_constant * options_.temperature / mass);
+}
 
 double Brownian::act(Store& store, const Integration& step, double time) const {
-  const double h = step.dt, energy = boltzmann * options_.temperature;
+  const double h = step.dt, energy = boltzmann_constant * options_.temperature;
   const auto moment = std::bit_cast<std::uint64_t>(time);
   double largest = 0;
   for (int p = 0; p < store.owned; ++p) {

@@ -5,8 +5,6 @@
 
 namespace silt {
 
-inline constexpr double boltzmann = 1.380649e-23;  ///< J/K
-
 /// The options `-brownian_...`.
 struct BrownianOptions {
   double temperature = 0;

@@ -32,14 +32,14 @@ std::vector<double> table(const Model& model, const ContactLaws& laws, int count
   return result;
 }
 
-/// The force of a model along the line of centres at a gap. N
+/// The force of a model along the line of centres at a gap, approaching at 1 m/s. N
 template <class Model>
 double force_at(const typename Model::template Constants<double>& constants, const Encounter& e, double gap) {
   Contact<double> contact{};
-  contact.overlap = -gap;
+  contact.overlap = -gap, contact.approach = 1;
   contact.effective_radius = e.radius, contact.effective_mass = e.mass;
   contact.radius = e.radius_i, contact.distance = e.distance + gap;
-  return Model::template force<double>(contact, constants);
+  return Model::template force<double>(contact, constants, {});
 }
 
 /// The largest force and the largest slope of a model up to its reach, and its force there.
@@ -98,6 +98,7 @@ ContactLaws::ContactLaws(Options& options, const Materials& materials)
   dlvo_.model = DlvoModels::read(options, "dlvo", "none", "forces between surfaces in a liquid");
   bridge_.model = BridgeModels::read(options, "bridge", "none", "liquid bridges");
   interfacial_.model = InterfacialModels::read(options, "interfacial", "none", "attraction at a fluid interface");
+  lubrication_.model = LubricationModels::read(options, "lubrication", "none", "fluid squeezed out of narrow gaps");
   setup_.materials = materials.count();
   each([&](const auto& slot, LawStage& stage) {
     stage.model = static_cast<int>(slot.model.index());
@@ -184,7 +185,7 @@ void ContactLaws::set_sizes(const ParticleSizes& sizes) {
               if constexpr (requires { model.enter(constants, e); })
                 setup_.enter_gap = std::max(setup_.enter_gap, model.enter(constants, e));
             }
-            if constexpr (requires { Model::template force<double>(Contact<double>{}, constants); }) {
+            if constexpr (requires { Model::template force<double>(Contact<double>{}, constants, {}); }) {
               const Shape shape = shape_of(model, constants, e);
               if (shape.peak > 0) worst = std::max(worst, shape.end / shape.peak);
             }
@@ -241,16 +242,21 @@ std::vector<LawDuration> ContactLaws::pull_durations(int a, int b, const Encount
         [&](const auto& model) {
           using Model = std::decay_t<decltype(model)>;
           const auto constants = model.constants(pair(a, b));
-          double stiffness = 0;
+          double stiffness = 0, damping = 0;
+          if constexpr (requires { Model::damping(constants, encounter); })
+            damping = Model::damping(constants, encounter);
           if constexpr (requires { Model::stiffness(constants, encounter); })
             stiffness = Model::stiffness(constants, encounter);
-          else if constexpr (requires { Model::template force<double>(Contact<double>{}, constants); })
-            stiffness = shape_of(model, constants, encounter).slope;
           else if constexpr (requires { model.slope(constants, encounter); })
             stiffness = model.slope(constants, encounter);
+          else if constexpr (requires { Model::template force<double>(Contact<double>{}, constants, {}); })
+            if (damping == 0) stiffness = shape_of(model, constants, encounter).slope;
           if (stiffness > 0)
             result.push_back(
                 {fmt::format("{} {}", slot, model.name), std::numbers::pi * std::sqrt(encounter.mass / stiffness)});
+          if (damping > 0)
+            result.push_back(
+                {fmt::format("{} {} (viscous)", slot, model.name), std::numbers::pi * encounter.mass / damping});
         },
         acts);
   };
@@ -258,6 +264,7 @@ std::vector<LawDuration> ContactLaws::pull_durations(int a, int b, const Encount
   add("dlvo", dlvo_.model);
   add("bridge", bridge_.model);
   add("interfacial", interfacial_.model);
+  add("lubrication", lubrication_.model);
   return result;
 }
 

@@ -29,7 +29,8 @@ struct LawDuration {
 };
 
 /// The laws between particles that are near each other, as the user chose them (`-normal_type`, `-adhesion_type`,
-/// `-dlvo_type`, `-bridge_type`, `-interfacial_type`, `-tangential_type`, `-rolling_type`, `-twisting_type`).
+/// `-dlvo_type`, `-bridge_type`, `-interfacial_type`, `-lubrication_type`, `-tangential_type`, `-rolling_type`,
+/// `-twisting_type`).
 class ContactLaws {
  public:
   /// Throws UserError for laws that do not go together.
@@ -73,6 +74,7 @@ class ContactLaws {
   const DlvoModels::Any& dlvo() const { return dlvo_.model; }
   const BridgeModels::Any& bridge() const { return bridge_.model; }
   const InterfacialModels::Any& interfacial() const { return interfacial_.model; }
+  const LubricationModels::Any& lubrication() const { return lubrication_.model; }
   /// What the laws know of two materials: with the sizes of the run and the friction of the moment.
   PairProperties pair(int a, int b) const;
 
@@ -85,6 +87,7 @@ class ContactLaws {
     act(dlvo_, setup_.dlvo);
     act(bridge_, setup_.bridge);
     act(interfacial_, setup_.interfacial);
+    act(lubrication_, setup_.lubrication);
     act(tangential_, setup_.tangential);
     act(rolling_, setup_.rolling);
     act(twisting_, setup_.twisting);
@@ -102,6 +105,7 @@ class ContactLaws {
   LawSlot<DlvoModels> dlvo_;
   LawSlot<BridgeModels> bridge_;
   LawSlot<InterfacialModels> interfacial_;
+  LawSlot<LubricationModels> lubrication_;
   LawSetup setup_;
   ParticleSizes sizes_;
   std::vector<std::string> notices_, warnings_;

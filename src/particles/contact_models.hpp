@@ -6,7 +6,8 @@
 #include "particles/adhesion/dmt.hpp"
 #include "particles/adhesion/interfacial.hpp"
 #include "particles/adhesion/jkr.hpp"
-#include "particles/adhesion/none.hpp"
+#include "particles/adhesion/squeeze_film.hpp"
+#include "particles/no_law.hpp"
 #include "particles/normal/kuwabara_kono.hpp"
 #include "particles/normal/langston.hpp"
 #include "particles/normal/lee_herrmann.hpp"
@@ -17,7 +18,6 @@
 #include "particles/normal/walton_braun.hpp"
 #include "particles/rolling/constant.hpp"
 #include "particles/rolling/epsd.hpp"
-#include "particles/rolling/none.hpp"
 #include "particles/rolling/spring.hpp"
 #include "particles/rolling/viscous_coulomb.hpp"
 #include "particles/tangential/mindlin.hpp"
@@ -25,7 +25,6 @@
 #include "particles/tangential/spring_dashpot.hpp"
 #include "particles/tangential/viscous.hpp"
 #include "particles/tangential/walton_braun.hpp"
-#include "particles/twisting/none.hpp"
 #include "particles/twisting/twisting.hpp"
 
 namespace silt {
@@ -35,13 +34,14 @@ namespace silt {
 /// const`, the gap (m) to which it acts, and `enter(...)`, the gap at which it begins (without it: touching).
 using NormalModels = Models<Tsuji, Linear, LeeHerrmann, KuwabaraKono, WaltonBraun, Thornton, LennardJones, Langston>;
 using TangentialModels = Models<Mindlin, SpringDashpot, SpringTangential, ViscousTangential, WaltonBraunTangential>;
-using RollingModels = Models<NoRolling, ConstantRolling, SpringRolling, ViscousCoulombRolling, EpsdRolling>;
-using TwistingModels = Models<NoTwisting, Twisting>;
+using RollingModels = Models<NoLaw, ConstantRolling, SpringRolling, ViscousCoulombRolling, EpsdRolling>;
+using TwistingModels = Models<NoLaw, Twisting>;
 /// Adhesion of the surfaces in contact, and forces along the line of centres, also beyond touching, that do not press
 /// the surfaces together.
-using AdhesionModels = Models<NoAdhesion, Jkr, Dmt, AutomaticAdhesion>;
-using DlvoModels = Models<NoPull, VdwDlvo, ElectrostaticDlvo, FullDlvo>;
-using BridgeModels = Models<NoBridge, CapillaryBridge>;
-using InterfacialModels = Models<NoPull, Interfacial>;
+using AdhesionModels = Models<NoLaw, Jkr, Dmt, AutomaticAdhesion>;
+using DlvoModels = Models<NoLaw, VdwDlvo, ElectrostaticDlvo, FullDlvo>;
+using BridgeModels = Models<NoLaw, CapillaryBridge>;
+using InterfacialModels = Models<NoLaw, Interfacial>;
+using LubricationModels = Models<NoLaw, SqueezeFilm>;
 
 }  // namespace silt

@@ -71,6 +71,8 @@ class Engine {
   void settle(const SettleOptions& options);
 
   const ContactLaws& laws() const { return laws_; }
+  /// What the user should know of laws and fields at the sizes of the particles, a line each.
+  std::vector<std::string> warnings() const;
   /// Liquid of this rank's films and of what they gave to bridges; after an advance. m3
   double liquid_volume() const { return liquid_.volume(store, contacts, wall_contacts); }
   std::shared_ptr<const Particles::Snapshot> snapshot() const;

@@ -98,6 +98,13 @@ void Engine::take_sizes() {
   laws_.set_sizes(sizes);
 }
 
+std::vector<std::string> Engine::warnings() const {
+  std::vector<std::string> all = laws_.warnings();
+  for (const auto& field : fields_)
+    for (auto& warning : field->warnings(materials, smallest_)) all.push_back(std::move(warning));
+  return all;
+}
+
 std::string Engine::find_bad() const {
   for (int p = 0; p < store.owned; ++p) {
     const Motion& motion = store.motion[p];
@@ -110,19 +117,24 @@ std::string Engine::find_bad() const {
 
 void Engine::largest_overlap(ParticleStep& step) const {
   long long touching = 0;
-  double largest = 0;
+  double largest = 0, fabric[4] = {};  // sums of the squared components, and the pairs
   for (int k = 0; k < contacts.contacts(); ++k) {
     const int i = contacts.contact_i()[k], j = contacts.contact_j()[k];
     const Motion &a = store.motion[i], &b = store.motion[j];
-    double square = 0;
+    double square = 0, squares[3];
     for (int d = 0; d < 3; ++d) {
       double distance = a.position[d] - b.position[d];
       distance -= periods_.length[d] * std::nearbyint(distance * periods_.inverse[d]);
-      square += distance * distance;
+      squares[d] = distance * distance;
+      square += squares[d];
     }
     const double overlap = a.radius + b.radius - std::sqrt(square);
     // Pairs that act over a gap do not touch; a pair across ranks is counted by the owner of its first particle.
-    touching += i < store.owned && overlap > 0;
+    if (i < store.owned && overlap > 0) {
+      ++touching;
+      for (int d = 0; d < 3; ++d) fabric[d] += squares[d] / square;
+      fabric[3] += 1;
+    }
     largest = std::max(largest, overlap / std::min(a.radius, b.radius));
   }
   for (const WallPoint& point : wall_contacts.points()) {
@@ -130,6 +142,8 @@ void Engine::largest_overlap(ParticleStep& step) const {
     touching += share > 0;
     largest = std::max(largest, share);
   }
+  MPI_Allreduce(MPI_IN_PLACE, fabric, 4, MPI_DOUBLE, MPI_SUM, communicator_);
+  for (int d = 0; d < 3; ++d) step.fabric[d] = fabric[3] > 0 ? fabric[d] / fabric[3] : 0;
   step.contacts = mpi_sum(touching);
   step.largest_overlap = mpi_max(largest);
 }

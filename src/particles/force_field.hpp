@@ -32,9 +32,15 @@ class ForceField {
   virtual void act(FieldStep& step) = 0;
   /// Durations that the time step must resolve, for the smallest particles of each material.
   virtual std::vector<StepBound> bounds(const Materials& materials, const SmallestRadii& smallest) const = 0;
-  /// Distance beyond which nothing acts (a cut-off), m; 0 when it acts on all.
+  /// What the user should know at these sizes, a line each.
+  virtual std::vector<std::string> warnings(const Materials& materials, const SmallestRadii& smallest) const = 0;
   virtual std::string description() const = 0;
 };
+
+/// For the smallest particles of each material, a line where a force that falls as the distance to the power `-power`
+/// is cut off (option `name`, m; 0: never) at more than 1e-3 of its size in contact.
+std::vector<std::string> cutoff_warnings(const std::string& name, double cutoff, double power,
+                                         const Materials& materials, const SmallestRadii& smallest);
 
 /// What the user chose by `-magnetic_...`, `-electric_...`, `-thermophoresis_...`; their columns are registered.
 std::vector<std::unique_ptr<ForceField>> make_force_fields(Options& options, const Mesh& mesh, Columns& columns,

@@ -98,108 +98,82 @@ struct StageCall {
 };
 using StageFunction = void (*)(Block&, const StageCall&);
 
-template <class Model, bool several>
-void normal_stage(Block& block, const StageCall& call) {
+/// Calls act(first contact, constants, history) for every pack of contacts of the block and keeps the history.
+template <class Model, bool several, class Act>
+SILT_INLINE void each_pack(const Block& block, const StageCall& call, Act&& act) {
   using Constants = typename Model::template Constants<Pack>;
   using History = typename Model::template History<Pack>;
   for (int o = 0; o < call.count; o += lanes) {
     const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
     History history = history_at<History>(call.history, o);
-    const NormalLoad<Pack> result = Model::template load<Pack>(contact_at(block, o), constants, history);
+    act(o, constants, history);
     keep_history(history, call.history, o);
+  }
+}
+
+template <class Model, bool several>
+void normal_stage(Block& block, const StageCall& call) {
+  each_pack<Model, several>(block, call, [&](int o, const auto& constants, auto& history) {
+    const NormalLoad<Pack> result = Model::template load<Pack>(contact_at(block, o), constants, history);
     store(&block.normal_force[o], result.force);
     store(&block.damping[o], result.damping);
     store(&block.contact_radius[o], result.contact_radius);
     store(&block.stiffness[o], result.stiffness);
-  }
+  });
 }
 
 template <class Model, bool several>
 void tangential_stage(Block& block, const StageCall& call) {
-  using Constants = typename Model::template Constants<Pack>;
-  using History = typename Model::template History<Pack>;
   const Pack dt(call.dt);
-  for (int o = 0; o < call.count; o += lanes) {
-    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
-    History history = history_at<History>(call.history, o);
+  each_pack<Model, several>(block, call, [&](int o, const auto& constants, auto& history) {
     const Contact<Pack> contact = contact_at(block, o);
     const NormalLoad<Pack> normal = normal_load_at(block, o);
     Pack force[3];
     Model::template force<Pack>(contact, normal, constants, dt, history, force);
-    keep_history(history, call.history, o);
     for (int d = 0; d < 3; ++d) store(&block.force[d][o], force[d] + normal.force * contact.normal[d]);
-  }
+  });
 }
 
 template <class Model, bool several>
 void rolling_stage(Block& block, const StageCall& call) {
-  using Constants = typename Model::template Constants<Pack>;
-  using History = typename Model::template History<Pack>;
   const Pack dt(call.dt);
-  for (int o = 0; o < call.count; o += lanes) {
-    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
-    History history = history_at<History>(call.history, o);
+  each_pack<Model, several>(block, call, [&](int o, const auto& constants, auto& history) {
     Pack torque[3];
     Model::template torque<Pack>(contact_at(block, o), normal_load_at(block, o), constants, dt, history, torque);
-    keep_history(history, call.history, o);
     for (int d = 0; d < 3; ++d) store(&block.torque[d][o], torque[d]);
-  }
+  });
 }
 
 template <class Model, bool several>
 void twisting_stage(Block& block, const StageCall& call) {
-  using Constants = typename Model::template Constants<Pack>;
-  using History = typename Model::template History<Pack>;
   const Pack dt(call.dt);
-  for (int o = 0; o < call.count; o += lanes) {
-    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
-    History history = history_at<History>(call.history, o);
+  each_pack<Model, several>(block, call, [&](int o, const auto& constants, auto& history) {
     const Contact<Pack> contact = contact_at(block, o);
     const Pack torque = Model::template torque<Pack>(contact, normal_load_at(block, o), constants, dt, history);
-    keep_history(history, call.history, o);
     for (int d = 0; d < 3; ++d) store(&block.torque[d][o], load(&block.torque[d][o]) + torque * contact.normal[d]);
-  }
+  });
 }
 
 template <class Model, bool several>
 void adhesion_stage(Block& block, const StageCall& call) {
-  using Constants = typename Model::template Constants<Pack>;
-  using History = typename Model::template History<Pack>;
-  for (int o = 0; o < call.count; o += lanes) {
-    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
-    History history = history_at<History>(call.history, o);
+  each_pack<Model, several>(block, call, [&](int o, const auto& constants, auto& history) {
     NormalLoad<Pack> normal = normal_load_at(block, o);
     Pack pull;
     Model::template adhere<Pack>(contact_at(block, o), constants, history, normal, pull);
-    keep_history(history, call.history, o);
     store(&block.normal_force[o], normal.force);
     store(&block.contact_radius[o], normal.contact_radius);
     store(&block.stiffness[o], normal.stiffness);
     store(&block.pull_off[o], normal.pull_off);
     store(&block.pull[o], pull);
-  }
+  });
 }
 
-/// A force along the line of centres that does not press the surfaces together.
+/// A force along the line of centres that does not press the surfaces together. Such a law only reads its history.
 template <class Model, bool several>
 void pull_stage(Block& block, const StageCall& call) {
-  using Constants = typename Model::template Constants<Pack>;
-  for (int o = 0; o < call.count; o += lanes) {
-    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
-    store(&block.pull[o], load(&block.pull[o]) + Model::template force<Pack>(contact_at(block, o), constants));
-  }
-}
-
-/// The same for a law that reads the history, which others keep.
-template <class Model, bool several>
-void bridge_stage(Block& block, const StageCall& call) {
-  using Constants = typename Model::template Constants<Pack>;
-  using History = typename Model::template History<Pack>;
-  for (int o = 0; o < call.count; o += lanes) {
-    const Constants constants = constants_at<Constants, several>(*call.stage, call.laws->materials, block, o);
-    const History history = history_at<History>(call.history, o);
+  each_pack<Model, several>(block, call, [&](int o, const auto& constants, const auto& history) {
     store(&block.pull[o], load(&block.pull[o]) + Model::template force<Pack>(contact_at(block, o), constants, history));
-  }
+  });
 }
 
 /// Surfaces that do not touch rub no friction: their normal force is a pull, and the memory of the slip is dropped.
@@ -239,7 +213,6 @@ inline void note_normal_stage(Block& block, const StageCall& call) {
 SILT_STAGE_OF(normal)
 SILT_STAGE_OF(adhesion)
 SILT_STAGE_OF(pull)
-SILT_STAGE_OF(bridge)
 SILT_STAGE_OF(tangential)
 SILT_STAGE_OF(rolling)
 SILT_STAGE_OF(twisting)
@@ -263,6 +236,10 @@ class Laws {
     function_[count_] = function;
     stage_[count_++] = &stage;
   }
+  template <class List, bool several>
+  SILT_INLINE void pull(const LawStage& stage) {
+    if (stage.model > 0) add(pull_function<several>(static_cast<const List*>(nullptr), stage.model), stage);
+  }
   template <bool several>
   SILT_INLINE void choose(const LawSetup& setup) {
     add(normal_function<several>(static_cast<const NormalModels*>(nullptr), setup.normal.model), setup.normal);
@@ -271,13 +248,10 @@ class Laws {
       // The adhesion sets the pull, be it none; the others add to it.
       add(adhesion_function<several>(static_cast<const AdhesionModels*>(nullptr), setup.adhesion.model),
           setup.adhesion);
-      if (setup.dlvo.model > 0)
-        add(pull_function<several>(static_cast<const DlvoModels*>(nullptr), setup.dlvo.model), setup.dlvo);
-      if (setup.bridge.model > 0)
-        add(bridge_function<several>(static_cast<const BridgeModels*>(nullptr), setup.bridge.model), setup.bridge);
-      if (setup.interfacial.model > 0)
-        add(pull_function<several>(static_cast<const InterfacialModels*>(nullptr), setup.interfacial.model),
-            setup.interfacial);
+      pull<DlvoModels, several>(setup.dlvo);
+      pull<BridgeModels, several>(setup.bridge);
+      pull<InterfacialModels, several>(setup.interfacial);
+      pull<LubricationModels, several>(setup.lubrication);
       add(separate_stage, whole_);
     }
     add(tangential_function<several>(static_cast<const TangentialModels*>(nullptr), setup.tangential.model),

@@ -54,8 +54,9 @@ SILT_INLINE void store(double* p, Pack a) { *reinterpret_cast<Vector*>(p) = a.v;
 SILT_INLINE void store_unaligned(double* p, Pack a) { __builtin_memcpy(p, &a.v, sizeof a.v); }
 
 #if SILT_LANES == 8
-SILT_INLINE Pack sqrt(Pack a) { return Vector(_mm512_sqrt_pd(__m512d(a.v))); }
-SILT_INLINE Pack nearest(Pack a) { return Vector(_mm512_roundscale_pd(__m512d(a.v), 8)); }
+// With a mask of all lanes: without one, g++ 12 warns of the undefined vector that the header hands on.
+SILT_INLINE Pack sqrt(Pack a) { return Vector(_mm512_maskz_sqrt_pd(0xff, __m512d(a.v))); }
+SILT_INLINE Pack nearest(Pack a) { return Vector(_mm512_maskz_roundscale_pd(0xff, __m512d(a.v), 8)); }
 /// Bit k is set where lane k of the mask is.
 SILT_INLINE unsigned lane_bits(Mask a) { return _mm512_movepi64_mask(__m512i(a.bits)); }
 #elif defined(__AVX2__)

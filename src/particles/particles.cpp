@@ -70,7 +70,7 @@ const std::vector<Departed>& Particles::departed() const { return impl_->departe
 double Particles::time_step() const { return impl_->limit.step; }
 std::string Particles::time_step_reason() const { return impl_->limit.reason; }
 const std::vector<std::string>& Particles::notices() const { return impl_->laws().notices(); }
-const std::vector<std::string>& Particles::warnings() const { return impl_->laws().warnings(); }
+std::vector<std::string> Particles::warnings() const { return impl_->warnings(); }
 const Materials& Particles::materials() const { return impl_->materials; }
 
 Vec3 Particles::momentum() const {

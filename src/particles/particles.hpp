@@ -38,6 +38,9 @@ struct ParticleStep {
   long long contacts = 0;      ///< touching pairs, walls included
   long long removed = 0;       ///< particles that left through an outlet since the start
   double largest_overlap = 0;  ///< as a share of the radius
+  /// Mean squares of the normal's components over the touching pairs of particles (diagonal of the fabric tensor): a
+  /// third each without a preferred direction, 1 along a chain; 0 without a contact.
+  Vec3 fabric = Vec3::Zero();
 };
 
 /// A particle to be created.
@@ -141,7 +144,7 @@ class Particles {
   std::string time_step_reason() const;
   /// What the laws say of themselves at the sizes of the run, and what the user should be warned of, a line each.
   const std::vector<std::string>& notices() const;
-  const std::vector<std::string>& warnings() const;
+  std::vector<std::string> warnings() const;
 
   /// Global sums. Collective.
   Vec3 momentum() const;

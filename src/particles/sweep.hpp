@@ -21,7 +21,7 @@ struct LawStage {
 
 /// The laws of all contacts of a run.
 struct LawSetup {
-  LawStage normal, adhesion, dlvo, bridge, interfacial, tangential, rolling, twisting;
+  LawStage normal, adhesion, dlvo, bridge, interfacial, lubrication, tangential, rolling, twisting;
   int materials = 1;
   bool extended = false;  ///< a law reads the extended fields of Contact
   bool cohesive = false;  ///< a law acts beyond touching or pulls

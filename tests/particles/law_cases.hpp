@@ -42,6 +42,7 @@ inline std::vector<std::pair<std::string, std::string>> law_options(const std::s
         {"interfacial_filling_angle", "40"},
         {"interfacial_density_difference", "1000"},
         {"interfacial_cutoff", "5e-3"}}},
+      {"lubrication squeeze", {{"lubrication_viscosity", "0.01"}, {"lubrication_least_gap", "1e-6"}}},
       {"tangential spring_dashpot", {{"tangential_stiffness", "3e3"}}},
       {"tangential spring", {{"tangential_stiffness", "3e3"}}},
       {"tangential viscous", {{"tangential_damping", "0.01"}}},
@@ -65,6 +66,7 @@ void each_law(Act&& act) {
   for (const auto& name : DlvoModels::names()) act("dlvo", name);
   for (const auto& name : BridgeModels::names()) act("bridge", name);
   for (const auto& name : InterfacialModels::names()) act("interfacial", name);
+  for (const auto& name : LubricationModels::names()) act("lubrication", name);
 }
 
 /// The laws of a case with one material, `bead`, and what the case adds.

@@ -54,14 +54,13 @@ inline Loads loads_of(const ContactLaws& laws, const Contact<double>& contact, c
     with_law(laws.adhesion(), setup.adhesion, pair, history, [&](const auto& model, const auto& c, auto& memory) {
       std::decay_t<decltype(model)>::template adhere<double>(contact, c, memory, result.normal, result.pull);
     });
-    const auto add = [&](const auto& model, const auto& c, auto&) {
-      result.pull += std::decay_t<decltype(model)>::template force<double>(contact, c);
+    const auto add = [&](const auto& model, const auto& c, const auto& memory) {
+      result.pull += std::decay_t<decltype(model)>::template force<double>(contact, c, memory);
     };
     with_law(laws.dlvo(), setup.dlvo, pair, history, add);
-    with_law(laws.bridge(), setup.bridge, pair, history, [&](const auto& model, const auto& c, auto& memory) {
-      result.pull += std::decay_t<decltype(model)>::template force<double>(contact, c, memory);
-    });
+    with_law(laws.bridge(), setup.bridge, pair, history, add);
     with_law(laws.interfacial(), setup.interfacial, pair, history, add);
+    with_law(laws.lubrication(), setup.lubrication, pair, history, add);
     if (!(result.normal.contact_radius > 0)) {
       result.pull += result.normal.force;
       result.normal.force = result.normal.damping = 0;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/philox.hpp"
+#include "base/physical_constants.hpp"
 #include "gas_box.hpp"
 #include "particles/brownian.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double diameter = 1e-7, viscosity = 0.89e-3, temperature = 298.15, density = 2500;
 const double friction = 3 * pi * viscosity * diameter;
-const double diffusivity = boltzmann * temperature / friction;
+const double diffusivity = boltzmann_constant * temperature / friction;
 const double mass = density * pi / 6 * std::pow(diameter, 3);
 const double response = mass / friction;  // 1.56e-9 s
 
@@ -94,7 +95,7 @@ TEST_CASE("Brownian velocities have the energy 3/2 k_B T and forget themselves a
     energy += vec3(s.v).squaredNorm() / 1728;
     together += vec3(s.v).dot(vec3(end.at(id).v)) / 1728;
   }
-  const double error = 3 * std::sqrt(2.0 / (3 * 1728)), thermal = 3 * boltzmann * temperature / mass;
+  const double error = 3 * std::sqrt(2.0 / (3 * 1728)), thermal = 3 * boltzmann_constant * temperature / mass;
   CHECK(energy == Approx(thermal).epsilon(error));
   CHECK(together / thermal == Approx(std::exp(-1)).margin(error));
   // The ballistic law: 6 D tau (t/tau - 1 + exp(-t/tau)).
@@ -107,7 +108,7 @@ TEST_CASE("Brownian spins have the energy 3/2 k_B T where the viscous torque hol
   double square = 0;
   for (const auto& [id, s] : gather(suspension.run.particles)) square += vec3(s.w).squaredNorm() / 1728;
   const double inertia = 0.1 * mass * diameter * diameter;
-  CHECK(square == Approx(3 * boltzmann * temperature / inertia).epsilon(3 * std::sqrt(2.0 / (3 * 1728))));
+  CHECK(square == Approx(3 * boltzmann_constant * temperature / inertia).epsilon(3 * std::sqrt(2.0 / (3 * 1728))));
 }
 
 TEST_CASE("Without inertia a step is u + F/k and the noise of (id, time, seed), the same on any ranks",

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/physical_constants.hpp"
 #include "gas_box.hpp"
 #include "particles/engine.hpp"
 #include "particles/field/electric.hpp"

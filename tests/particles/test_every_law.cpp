@@ -204,3 +204,39 @@ TEST_CASE("A free pair keeps its momentum and angular momentum under every law",
     CHECK((run.particles.angular_momentum(Vec3::Zero()) - spin).norm() < 1e-12 * mass * 0.1 * radius_b);
   });
 }
+
+TEST_CASE("Under every law a pair keeps its memory on its way through all ranks", "[particles][mpi]") {
+  // Two spheres that rub, turn and part move along the box through every rank, and stand still in another run.
+  each_law([&](const char* slot, const std::string& name) {
+    INFO(slot << " " << name);
+    const auto relative = [&](double drift, int* rebuilds) {
+      BoxCase setup;
+      setup.box(Vec3(0, 0, 0), Vec3(60e-3, 6e-3, 6e-3));
+      setup.mesh.cells = {30, 2, 2};
+      setup.set("material_bead_rolling_friction", "0.1").set("material_bead_friction", "0.5");
+      setup.set("particles_speed", "0.2").set("particles_overlap_limit", "0.5").set("particles_skin", "1.5e-3");
+      setup.set("particles_step", "2e-6").set("particles_step_override", "yes");
+      for (const auto& [option, value] : law_options(slot, name)) setup.set(option, value);
+      BoxRun run(setup);
+      const Vec3 n = Vec3(1, 2, 2) / 3, middle(5e-3, 3e-3, 3e-3), carried(drift, 0, 0);
+      run.particles.add(
+          {sphere(middle - (radius_a - 1e-6) * n, carried + 0.05 * n + Vec3(0.02, 0, 0), radius_a, Vec3(40, -20, 90)),
+           sphere(middle + (radius_b - 1e-6) * n, carried - 0.05 * n, radius_b, Vec3(-50, 10, 5))});
+      for (int k = 0; k < 5; ++k) *rebuilds += run.particles.advance(k * 1e-4, 1e-4).rebuilds;
+      const auto state = gather(run.particles);
+      const State &a = state.at(0), &b = state.at(1);
+      std::vector<double> values;
+      for (int d = 0; d < 3; ++d) {
+        values.push_back((a.x[d] - b.x[d]) / 1e-3);
+        values.push_back((a.v[d] - b.v[d]) / 0.1);
+        values.push_back(a.w[d] / 100);
+        values.push_back(b.w[d] / 100);
+      }
+      return values;
+    };
+    int still = 0, moving = 0;
+    const auto expected = relative(0, &still), found = relative(90, &moving);
+    CHECK(moving > still + 20);
+    for (size_t k = 0; k < expected.size(); ++k) CHECK(found[k] == Approx(expected[k]).margin(1e-7));
+  });
+}

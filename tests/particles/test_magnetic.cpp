@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "base/physical_constants.hpp"
 #include "gas_box.hpp"
 #include "particles/engine.hpp"
 #include "particles/field/magnetic.hpp"

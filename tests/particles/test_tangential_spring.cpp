@@ -3,6 +3,7 @@
 #include <initializer_list>
 
 #include "particles/tangential/tangential_load.hpp"
+#include "particles/tangential/walton_braun.hpp"
 
 using namespace silt;
 
@@ -69,4 +70,30 @@ TEST_CASE("a sliding contact carries mu F_n, and its spring is what that force n
   limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, 0.5, step, spring, force);
   CHECK(middle > last);
   CHECK(force[1] - middle == Approx(stiffness * 0.2 * step).epsilon(1e-6));
+}
+
+TEST_CASE("Walton-Braun friction is of second order in the step, through reversals of the slip") {
+  // The ball of above under a constant load, with incremental slip up to 0.7 of the limit.
+  const auto at_end = [](int steps) {
+    Contact<double> contact{};
+    contact.normal[2] = 1;
+    contact.effective_mass = mass;
+    const NormalLoad<double> normal{2e-4, 0, 1e-5, stiffness, 0};
+    const WaltonBraunTangential::Constants<double> constants{1, 0.5};
+    WaltonBraunTangential::History<double> history{};
+    const double step = 20 / frequency / steps;
+    double velocity = 5e-5 / stiffness * frequency, acceleration = 0, force[3];
+    history.owed[0] = 0.5 * step * velocity;
+    for (int n = 0; n < steps; ++n) {
+      contact.slip[0] = velocity + step * acceleration;
+      WaltonBraunTangential::force<double>(contact, normal, constants, step, history, force);
+      const double next = 3.5 * force[0] / mass;
+      velocity += 0.5 * step * (acceleration + next);
+      acceleration = next;
+    }
+    return velocity;
+  };
+  const double exact = at_end(256000), coarse = std::abs(at_end(500) - exact), fine = std::abs(at_end(2000) - exact);
+  INFO(coarse << " " << fine);
+  CHECK(std::log2(coarse / fine) / 2 > 1.7);
 }

@@ -13,23 +13,6 @@
 
 namespace silt {
 
-/// No liquid between the particles.
-struct NoBridge {
-  static constexpr const char* name = "none";
-  static constexpr ModelNote note{"", "", "F = 0", ""};
-  static constexpr bool extended = false;
-  void options(OptionGroup&) {}
-  template <class Real>
-  struct Constants {};
-  Constants<double> constants(const PairProperties&) const { return {}; }
-  template <class Real>
-  struct History {};
-  template <class Real>
-  static SILT_INLINE Real force(const Contact<Real>&, const Constants<Real>&, const History<Real>&) {
-    return Real(0.0);
-  }
-};
-
 /// Liquid bridges. Capillary force (7.54-7.55), Maugis 1987 (the print lacks sigma): F = -4 pi R_eff sigma cos(theta)
 /// G, G = 1 - (1 + V/(pi R_eff h^2))^(-1/2), G = 1 in contact. Viscous force (7.57), Matthewson 1988: F = 6 pi mu
 /// R_eff^2 G^2 (dx/dt)/h with h not below the roughness. A bridge forms on contact and breaks (7.56) at h = (1 +

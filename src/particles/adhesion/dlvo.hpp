@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/models.hpp"
+#include "base/physical_constants.hpp"
 #include "particles/adhesion/dlvo_forces.hpp"
 #include "particles/materials.hpp"
 #include "particles/normal/normal_load.hpp"
@@ -49,7 +50,7 @@ struct VdwDlvo {
   struct History {};
 
   template <class Real>
-  static SILT_INLINE Real force(const Contact<Real>& contact, const Constants<Real>& c) {
+  static SILT_INLINE Real force(const Contact<Real>& contact, const Constants<Real>& c, const History<Real>&) {
     const Real zero(0.0), gap = zero - contact.overlap;
     const Real other = Real(1.0) / contact.effective_radius - Real(1.0) / contact.radius;
     const Real full = hamaker_force(c.hamaker, larger(gap, c.least_gap), contact.radius, other);
@@ -86,14 +87,12 @@ struct ElectrostaticDlvo {
           "the electrostatic part of -dlvo_type needs one of -dlvo_debye_length (m) and -dlvo_ionic_strength (mol/m3), "
           "not both");
   }
-  static constexpr double vacuum_permittivity = 8.8541878128e-12;  ///< F/m
   double permittivity() const { return relative_permittivity * vacuum_permittivity; }
   /// 1/kappa = sqrt(eps k_B T/(2 e^2 N_A I)). m
   double length() const {
     if (debye_length) return *debye_length;
-    constexpr double boltzmann_constant = 1.380649e-23, charge = 1.602176634e-19, avogadro = 6.02214076e23;
     return std::sqrt(permittivity() * boltzmann_constant * temperature /
-                     (2 * charge * charge * avogadro * *ionic_strength));
+                     (2 * elementary_charge * elementary_charge * avogadro_constant * *ionic_strength));
   }
 
   template <class Real>
@@ -115,7 +114,7 @@ struct ElectrostaticDlvo {
   struct History {};
 
   template <class Real>
-  static SILT_INLINE Real force(const Contact<Real>& contact, const Constants<Real>& c) {
+  static SILT_INLINE Real force(const Contact<Real>& contact, const Constants<Real>& c, const History<Real>&) {
     const Real zero(0.0), gap = zero - contact.overlap;
     const Real full = double_layer_force(c.permittivity, c.product, c.squares, c.inverse_length,
                                          larger(gap, c.least_gap), contact.effective_radius);
@@ -148,8 +147,8 @@ struct FullDlvo {
   template <class Real>
   struct History {};
   template <class Real>
-  static SILT_INLINE Real force(const Contact<Real>& contact, const Constants<Real>& c) {
-    return VdwDlvo::force(contact, c.vdw) + ElectrostaticDlvo::force(contact, c.layer);
+  static SILT_INLINE Real force(const Contact<Real>& contact, const Constants<Real>& c, const History<Real>&) {
+    return VdwDlvo::force<Real>(contact, c.vdw, {}) + ElectrostaticDlvo::force<Real>(contact, c.layer, {});
   }
   double reach(const Constants<double>& c, const Encounter&) const {
     return c.vdw.hamaker != 0 || c.layer.squares > 0 ? c.layer.cutoff : 0;

@@ -67,7 +67,7 @@ struct Interfacial {
   struct History {};
 
   template <class Real>
-  static SILT_INLINE Real force(const Contact<Real>& contact, const Constants<Real>& c) {
+  static SILT_INLINE Real force(const Contact<Real>& contact, const Constants<Real>& c, const History<Real>&) {
     const Real zero(0.0), one(1.0), least(1e-300);
     const Real inverse_other = one / contact.effective_radius - one / contact.radius;
     const auto particles = inverse_other > zero;

@@ -4,8 +4,6 @@
 
 namespace silt {
 
-inline constexpr double vacuum_permittivity = 8.8541878128e-12;  ///< F/m
-
 /// A sphere in a fluid: permittivities (F/m) and conductivities (S/m).
 struct Dielectric {
   double particle_permittivity, fluid_permittivity;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/physical_constants.hpp"
 #include "particles/field/turned.hpp"
 #include "particles/particles.hpp"
 

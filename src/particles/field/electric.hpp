@@ -57,6 +57,9 @@ class Electric final : public ForceField {
            const std::string& instructions);
   void act(FieldStep& step) override;
   std::vector<StepBound> bounds(const Materials& materials, const SmallestRadii& smallest) const override;
+  std::vector<std::string> warnings(const Materials& materials, const SmallestRadii& smallest) const override {
+    return cutoff_warnings("electric_cutoff", options_.coulomb ? options_.cutoff : 0, 2, materials, smallest);
+  }
   std::string description() const override;
   double real_factor() const { return real_; }
   double imaginary_factor() const { return imaginary_; }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/physical_constants.hpp"
 #include "particles/field/turned.hpp"
 #include "particles/insertion/random.hpp"
 #include "particles/particles.hpp"
@@ -168,13 +169,6 @@ std::vector<StepBound> Magnetic::bounds(const Materials& materials, const Smalle
         [&](const auto& m) { return std::max(m.largest(volume), m.moment(Vec3(strongest_, 0, 0), volume).norm()); },
         model_);
     if (!(moment > 0)) continue;
-    if (const double left = std::pow(2 * radius / options_.cutoff, 4); options_.cutoff > 0 && left > 1e-3 && !warned_) {
-      warned_ = true;
-      if (mpi_rank() == 0)
-        fmt::print(stderr,
-                   "silt: warning: -magnetic_cutoff {:g} m leaves {:.2g} of the force in contact of the smallest {}\n",
-                   options_.cutoff, left, materials[a].name);
-    }
     // Head to tail in contact: F = 3 mu0 m^2/(2 pi r^4), |dF/dr| = 4 F/r at r = d; half a period of the pair's mass.
     const double distance = 2 * radius;
     const double stiffness = 6 * vacuum_permeability * moment * moment / (pi * std::pow(distance, 5));

@@ -37,6 +37,9 @@ class Magnetic final : public ForceField {
            const std::string& instructions);
   void act(FieldStep& step) override;
   std::vector<StepBound> bounds(const Materials& materials, const SmallestRadii& smallest) const override;
+  std::vector<std::string> warnings(const Materials& materials, const SmallestRadii& smallest) const override {
+    return cutoff_warnings("magnetic_cutoff", options_.cutoff, 4, materials, smallest);
+  }
   std::string description() const override;
 
  private:
@@ -52,7 +55,6 @@ class Magnetic final : public ForceField {
   double scale_;      ///< from what the user gave to A/m
   double strongest_;  ///< A/m, of the applied field, as sampled
   int column_;
-  mutable bool warned_ = false;  ///< of a short cut-off
   const PairKernels& kernels_;
   PairSources sources_;
   PairSums force_, neighbours_;

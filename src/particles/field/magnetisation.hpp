@@ -1,6 +1,5 @@
 #pragma once
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "base/error.hpp"
@@ -8,8 +7,6 @@
 #include "base/vector.hpp"
 
 namespace silt {
-
-inline constexpr double vacuum_permeability = 4e-7 * std::numbers::pi;  ///< H/m
 
 /// The field that a moment answers to.
 enum class MomentFollows {

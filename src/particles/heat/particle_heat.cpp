@@ -6,14 +6,11 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "base/physical_constants.hpp"
 #include "particles/particles.hpp"
 
 namespace silt {
-namespace {
-
-constexpr double stefan_boltzmann = 5.670374419e-8;  // W/(m2 K4)
-
-}  // namespace
+namespace {}  // namespace
 
 std::unique_ptr<ParticleHeat> ParticleHeat::create(Options& options, const Materials& materials, Columns& columns) {
   HeatOptions chosen;
@@ -92,7 +89,7 @@ void ParticleHeat::advance(Store& store, const ContactLists& contacts, const Per
     const double T = temperature[p], r = motion.radius;
     if (made) gain += source_(x, time - dt) * 4.0 / 3.0 * std::numbers::pi * r * r * r;
     if (options_.emissivity > 0)
-      gain += options_.emissivity * stefan_boltzmann * 4 * std::numbers::pi * r * r *
+      gain += options_.emissivity * stefan_boltzmann_constant * 4 * std::numbers::pi * r * r *
               (std::pow(environment_(x, time - dt), 4) - T * T * T * T);
     const double capacity = this->capacity(motion), z = exchange[p] * dt / capacity;
     // dT = ((T_f - T) + gain/(h A)) (1 - exp(-z)), and its limit without exchange.

@@ -37,6 +37,7 @@ struct WaltonBraunTangential {
     Real turning;   ///< N, F*, signed along `force`
     Real falling;   ///< -1 while F_t grows, 1 while it falls, 0 at first
     Real limit;     ///< N, mu F_n of the last step
+    Real owed[3];   ///< m, displacement in the rest of the step, after the force was read (share_of_step)
   };
 
   template <class Real>
@@ -46,9 +47,12 @@ struct WaltonBraunTangential {
     const Real limit = c.friction * magnitude(normal.force), stiffness = c.ratio * normal.stiffness;
     turn_into_plane(history.force, contact.normal);
     const Real present = sqrt(dot(history.force, history.force));
+    const Real read = dt * share_of_step(stiffness, contact.effective_mass, dt);
+    const Real out_of_plane = dot(history.owed, contact.normal);
     Real direction[3], step[3];
     for (int d = 0; d < 3; ++d) {
-      step[d] = dt * contact.slip[d];
+      step[d] = history.owed[d] - out_of_plane * contact.normal[d] + read * contact.slip[d];
+      history.owed[d] = (dt - read) * contact.slip[d];
       direction[d] = history.force[d] / larger(present, least);
     }
     // Without a force yet, it starts along the displacement.

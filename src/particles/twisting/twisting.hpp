@@ -19,7 +19,7 @@ struct Twisting {
       "(7.39-7.40)", "Marshall 2009",
       "M_t = -(k_q int W_t dt + gamma_q W_t), at most 2/3 mu |F_n| a; k_q = 4 G_eff a^3 unless given",
       "frequency sqrt(k_q (1/I_i + 1/I_j)); a spinning ball on a plane stops after I w/(2/3 mu m g a)"};
-  static constexpr bool acts = true, extended = true;
+  static constexpr bool extended = true;
   std::optional<double> stiffness, damping;
   void options(OptionGroup& option) {
     option("stiffness", stiffness, "N m", "twisting stiffness k_q; default: 4 G_eff a^3, a the contact radius",
