@@ -176,6 +176,26 @@ TEST_CASE("A suspension with the drag of Mazzei and Lettieri settles by the law 
   CHECK(MazzaDrag::exponent(1e9) == Approx(2.4).epsilon(1e-3));
 }
 
+TEST_CASE("the fits to resolved beds have the values of their papers' formulas, worked out apart from the code",
+          "[drag]") {
+  // Drag over Stokes' at (a, rho d |u - v|/mu) = (0.4, 0.5), (0.5, 50), (0.7, 20), (0.9, 300), from the formulas as
+  // published and as OpenFOAM, CFDEM and PhasicFlow have them; Mazzei & Lettieri's with psi = -ln(phi)/ln(a), n by
+  // bisection.
+  const std::array<std::pair<double, double>, 4> at = {{{0.4, 0.5}, {0.5, 50}, {0.7, 20}, {0.9, 300}}};
+  const auto compare = [&](const auto& law, const std::array<double, 4>& expected) {
+    for (size_t k = 0; k < at.size(); ++k) {
+      const auto flow = air(at[k].second, at[k].first);
+      INFO(law.name << " " << at[k].first << " " << at[k].second);
+      CHECK(law.exchange(flow) / flow.stokes() == Approx(expected[k]).epsilon(1e-6));
+    }
+  };
+  compare(BeetstraDrag{}, {15.138519, 14.058266, 6.2183801, 15.157759});
+  compare(KochHillDrag{}, {15.039362, 12.861562, 5.5467238, 16.260587});
+  compare(RongDrag{}, {12.249017, 11.228221, 4.666812, 12.993112});
+  compare(TangDrag{}, {15.49148, 14.996945, 6.6768826, 12.350496});
+  compare(MazzaDrag{}, {8.9083627, 10.787579, 4.6945417, 12.24173});
+}
+
 TEMPLATE_TEST_CASE("every drag law is finite at rest, positive, and grows with speed and with crowding", "[drag]",
                    StokesCunninghamDrag, SchillerNaumannDrag, HaiderLevenspielDrag, WenYuDrag, ErgunDrag, GidaspowDrag,
                    DiFeliceDrag, BeetstraDrag, KochHillDrag, RongDrag, TangDrag, MazzaDrag) {
