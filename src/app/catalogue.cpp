@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "app/simulation.hpp"
+#include "coupling/dispersion.hpp"
 #include "coupling/drag/drag_models.hpp"
 #include "coupling/fluid_forces.hpp"
 #include "coupling/heat/nusselt.hpp"
@@ -25,6 +26,7 @@
 #include "particles/heat/particle_heat.hpp"
 #include "particles/insertion/insertion_options.hpp"
 #include "particles/insertion/streams.hpp"
+#include "particles/law_table.hpp"
 #include "particles/materials.hpp"
 #include "particles/particle_options.hpp"
 #include "particles/walls/wall_boundary.hpp"
@@ -77,6 +79,8 @@ Options everything() {
   declare(options, "dlvo", DlvoModels{}, "forces between surfaces in a liquid");
   declare(options, "bridge", BridgeModels{}, "liquid bridges");
   declare(options, "interfacial", InterfacialModels{}, "attraction at a fluid interface");
+  declare(options, "lubrication", LubricationModels{}, "fluid squeezed out of narrow gaps");
+  declare<LawTableOptions>(options, "law_table");
   declare<ParticleOptions>(options, "particles");
   declare<BrownianOptions>(options, "brownian");
   declare(options, "magnetic", MagneticModels{}, "magnetic moment of the particles");
@@ -93,6 +97,7 @@ Options everything() {
   declare(options, "viscous_torque", ViscousTorqueModels{}, "viscous torque on the spin");
   declare(options, "thermophoresis", ThermophoresisModels{}, "force by a temperature gradient of the gas");
   declare<ThermophoresisOptions>(options, "thermophoresis");
+  declare(options, "dispersion", DispersionModels{}, "turbulent dispersion of particles");
   declare(options, "nusselt", NusseltModels{}, "heat transfer between fluid and particles");
   declare<CouplingOptions>(options, "coupling");
   declare<OutputOptions>(options, "output");
@@ -123,11 +128,13 @@ void each_model(Act&& act) {
   each_of("dlvo", DlvoModels{}, act);
   each_of("bridge", BridgeModels{}, act);
   each_of("interfacial", InterfacialModels{}, act);
+  each_of("lubrication", LubricationModels{}, act);
   each_of("drag", DragModels{}, act);
   each_of("saffman", SaffmanModels{}, act);
   each_of("magnus", MagnusModels{}, act);
   each_of("viscous_torque", ViscousTorqueModels{}, act);
   each_of("thermophoresis", ThermophoresisModels{}, act);
+  each_of("dispersion", DispersionModels{}, act);
   each_of("nusselt", NusseltModels{}, act);
   each_of("magnetic", MagneticModels{}, act);
 }

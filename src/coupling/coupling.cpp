@@ -48,6 +48,7 @@ Coupling::Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options
   drag_ = DragModels::read(options, "drag", "gidaspow", "drag law of the particles");
   forces_ = std::make_unique<FluidForces>(mesh, mass_, options, options_.viscous_stress);
   thermophoresis_ = Thermophoresis::create(mesh, mass_, fluid, options);
+  dispersion_ = Dispersion::create(fluid, particles, options);
   if (particles.has_heat() && !fluid.temperature().empty())
     heat_ = std::make_unique<HeatExchange>(mesh, mass_, particles, fluid, options);
   if (mesh.dimension == 2) {
@@ -150,6 +151,7 @@ void Coupling::before_particles(double dt) {
   kernel_.sample(nodal_, u, 3);
   const auto given = fluid_.given_void_fraction();
   kernel_.sample(given.empty() ? void_fraction_.previous() : given, alpha, 1);
+  if (dispersion_) dispersion_->act(fluid_, *filter_, kernel_, particles_, dt, u);
 
   const double density = fluid_.density(), viscosity = fluid_.viscosity();
   // Model B leaves the whole pressure gradient to the fluid; its drag is then that of model A over alpha (Zhou et al.
@@ -330,8 +332,9 @@ std::string Coupling::description() const {
   const std::string width = options_.filter_length
                                 ? fmt::format("length {:.4g} m", *options_.filter_length)
                                 : fmt::format("two diameters ({:.4g} m), at least two cells", 2 * diameter_);
-  return fmt::format("drag {}{}{}{}, model {}, filter {} in {} passes", law, forces_->description(),
+  return fmt::format("drag {}{}{}{}{}, model {}, filter {} in {} passes", law, forces_->description(),
                      thermophoresis_ ? ", thermophoresis " + thermophoresis_->name() : "",
+                     dispersion_ ? ", dispersion " + dispersion_->name() : "",
                      heat_ ? ", heat by " + heat_->name() : "", fluid_.model_a() ? "A" : "B", width, filter_->passes());
 }
 

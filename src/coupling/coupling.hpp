@@ -8,6 +8,7 @@
 #include "base/locator.hpp"
 #include "base/mesh.hpp"
 #include "base/options.hpp"
+#include "coupling/dispersion.hpp"
 #include "coupling/drag/drag_models.hpp"
 #include "coupling/exchange.hpp"
 #include "coupling/filter.hpp"
@@ -57,7 +58,7 @@ struct CouplingOptions {
 /// given as a force over the particles' next step.
 class Coupling {
  public:
-  /// Reads `-coupling_...` and `-drag_...`. Collective.
+  /// Reads `-coupling_...`, `-drag_...`, `-dispersion_...` and the options of the other forces. Collective.
   Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options& options, const Vec3& gravity);
   ~Coupling();
 
@@ -112,6 +113,7 @@ class Coupling {
   std::unique_ptr<Filter> filter_;
   std::unique_ptr<FluidForces> forces_;
   std::unique_ptr<Thermophoresis> thermophoresis_;  ///< null: none
+  std::unique_ptr<Dispersion> dispersion_;          ///< null: none
   std::unique_ptr<HeatExchange> heat_;              ///< null: fluid or particles have no temperature
   double last_step_ = 0;                            ///< s, the step that led to the present flow; 0: none
   ExchangeLedger ledger_;

@@ -25,6 +25,13 @@ bool mentioned(const Mesh& mesh, const Options& options) {
 
 }  // namespace
 
+std::span<const double> Fluid::turbulent_energy() const {
+  return turbulence() ? turbulence()->energy() : std::span<const double>{};
+}
+std::span<const double> Fluid::turbulent_dissipation() const {
+  return turbulence() ? turbulence()->dissipation() : std::span<const double>{};
+}
+
 std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const Vec3& gravity) {
   FluidOptions fluid;
   options.read("fluid", fluid);

@@ -112,6 +112,9 @@ class Fluid {
   }
   /// Null for laminar flow.
   virtual const Turbulence* turbulence() const { return nullptr; }
+  /// [nodes] m2/s2 and m2/s3: k and epsilon; empty for laminar flow and for models of turbulence that have none.
+  virtual std::span<const double> turbulent_energy() const;
+  virtual std::span<const double> turbulent_dissipation() const;
   /// [nodes] the void fraction that particles see instead of their own; empty unless it is prescribed.
   virtual std::span<const double> given_void_fraction() const { return {}; }
   /// Flow and force per boundary, in the order of Mesh::boundaries. Collective.

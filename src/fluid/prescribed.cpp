@@ -40,6 +40,12 @@ Prescribed::Prescribed(const Mesh& mesh, Options& options, const FluidOptions& f
       throw UserError("-fluid_temperature needs -fluid_heat_capacity and -fluid_conductivity");
     temperature_formula_.emplace("fluid_temperature", given.temperature);
   }
+  if (given.turbulent_energy.empty() != given.turbulent_dissipation.empty())
+    throw UserError("-fluid_turbulent_energy and -fluid_turbulent_dissipation go together: give both or none");
+  if (!given.turbulent_energy.empty()) {
+    energy_formula_.emplace("fluid_turbulent_energy", given.turbulent_energy);
+    dissipation_formula_.emplace("fluid_turbulent_dissipation", given.turbulent_dissipation);
+  }
   evaluate(0);
   change_.assign(velocity_.size(), 0.0);
   temperature_change_.assign(temperature_.size(), 0.0);
@@ -50,7 +56,8 @@ void Prescribed::evaluate(double time) {
   pressure_.resize(mesh_.nodes);
   if (void_fraction_formula_) void_fraction_.resize(mesh_.nodes);
   if (temperature_formula_) temperature_.resize(mesh_.nodes);
-  bool wrong = false;
+  if (energy_formula_) turbulent_energy_.resize(mesh_.nodes), turbulent_dissipation_.resize(mesh_.nodes);
+  bool wrong = false, negative = false;
   for (int i = 0; i < mesh_.nodes; ++i) {
     const Vec3 x = vec3(&mesh_.node_coordinates[3 * static_cast<std::size_t>(i)]);
     Vec3 u = velocity_formula_(x, time);
@@ -58,11 +65,19 @@ void Prescribed::evaluate(double time) {
     vec3(&velocity_[3 * static_cast<std::size_t>(i)]) = u;
     pressure_[i] = pressure_formula_(x, time);
     if (temperature_formula_) temperature_[i] = (*temperature_formula_)(x, time);
+    if (energy_formula_) {
+      turbulent_energy_[i] = (*energy_formula_)(x, time);
+      turbulent_dissipation_[i] = (*dissipation_formula_)(x, time);
+      negative |= !(turbulent_energy_[i] >= 0 && turbulent_dissipation_[i] >= 0);
+    }
     if (void_fraction_formula_) {
       void_fraction_[i] = (*void_fraction_formula_)(x, time);
       wrong |= !(void_fraction_[i] > 0 && void_fraction_[i] <= 1);
     }
   }
+  if (mpi_any(negative))
+    throw UserError(fmt::format(
+        "-fluid_turbulent_energy or -fluid_turbulent_dissipation is below 0 somewhere at t = {:g} s", time));
   if (mpi_any(wrong))
     throw UserError(fmt::format("-fluid_void_fraction is not above 0 and at most 1 everywhere at t = {:g} s", time));
   gradient_.apply(pressure_, 1, pressure_gradient_);
@@ -127,6 +142,10 @@ std::vector<Fluid::StateArray> Prescribed::state() {
   if (temperature_formula_) {
     arrays.push_back({"temperature", &temperature_, 1});
     arrays.push_back({"temperature_change", &temperature_change_, 1});
+  }
+  if (energy_formula_) {
+    arrays.push_back({"turbulent_energy", &turbulent_energy_, 1});
+    arrays.push_back({"turbulent_dissipation", &turbulent_dissipation_, 1});
   }
   if (void_fraction_formula_) arrays.push_back({"given_void_fraction", &void_fraction_, 1});
   return arrays;

@@ -12,6 +12,7 @@ namespace silt {
 /// The options `-fluid_...` of a flow that is given, not solved.
 struct PrescribedOptions {
   std::string velocity = "0, 0, 0", pressure = "0", void_fraction, temperature;
+  std::string turbulent_energy, turbulent_dissipation;
   double heat_capacity = 0, conductivity = 0;
   void options(OptionGroup& option) {
     option("velocity", velocity, "m/s, formulas in x, y, z, t: the velocity of a prescribed fluid");
@@ -19,6 +20,10 @@ struct PrescribedOptions {
     option("void_fraction", void_fraction,
            "formula in x, y, z, t: the void fraction that the particles of a prescribed fluid see; default: their own");
     option("temperature", temperature, "K, formula in x, y, z, t: the temperature of a prescribed fluid");
+    option("turbulent_energy", turbulent_energy,
+           "m2/s2, formula in x, y, z, t: k of a prescribed fluid, for turbulent dispersion");
+    option("turbulent_dissipation", turbulent_dissipation,
+           "m2/s3, formula in x, y, z, t: epsilon of a prescribed fluid, for turbulent dispersion");
     option("heat_capacity", heat_capacity, "J/(kg K)", "specific heat capacity of the fluid", non_negative);
     option("conductivity", conductivity, "W/(m K)", "heat conductivity of the fluid", non_negative);
   }
@@ -38,6 +43,8 @@ class Prescribed final : public Fluid {
   std::span<const double> pressure() const override { return pressure_; }
   std::span<const double> pressure_gradient() const override { return pressure_gradient_; }
   std::span<const double> given_void_fraction() const override { return void_fraction_; }
+  std::span<const double> turbulent_energy() const override { return turbulent_energy_; }
+  std::span<const double> turbulent_dissipation() const override { return turbulent_dissipation_; }
   std::span<const double> temperature() const override { return temperature_; }
   std::span<const double> temperature_change() const override { return temperature_change_; }
   std::vector<BoundaryFlow> boundary_flow() const override;
@@ -50,12 +57,12 @@ class Prescribed final : public Fluid {
   const Mesh& mesh_;
   VectorExpression velocity_formula_;
   Expression pressure_formula_;
-  std::optional<Expression> void_fraction_formula_, temperature_formula_;
+  std::optional<Expression> void_fraction_formula_, temperature_formula_, energy_formula_, dissipation_formula_;
   std::vector<double> mass_;
   NodalGradient gradient_;
   std::vector<FacetRule> facets_;
   std::vector<double> velocity_, change_, pressure_, pressure_gradient_, void_fraction_, temperature_,
-      temperature_change_;
+      temperature_change_, turbulent_energy_, turbulent_dissipation_;
 };
 
 }  // namespace silt
