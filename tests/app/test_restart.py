@@ -35,6 +35,15 @@ progress: {quiet: yes}
 """
 # A mean over the whole run, which half of it does not give.
 EXPECT = ["-expect_swing_quantity", "particle_kinetic_energy", "-expect_swing_statistic", "mean", "-expect_swing_window", "0.005, 0.04", "-expect_swing_value", "1", "-expect_swing_tolerance", "1e9"]
+# Laws that remember much: the deepest overlap, turning points of friction and rolling, necks and bridges.
+REMEMBERING = GRAINS.replace("end: 0.04", "end: 0.02").replace("interval: 0.02", "interval: 0.01").replace("friction: 0.3,", "friction: 0.3, surface_energy: 0.05,")
+PLASTIC = REMEMBERING.replace("rolling: {type: constant}", """normal: {type: walton_braun, stiffness: 5.0e+2}
+tangential: {type: walton_braun}
+rolling: {type: epsd}
+twisting: {type: twisting}""")
+STICKY = REMEMBERING.replace("rolling: {type: constant}", """adhesion: {type: jkr}
+rolling: {type: spring}
+bridge: {type: capillary, surface_tension: 0.05, liquid_content: 0.01}""")
 BED = """\
 mesh: {type: box, lower: [0, 0, 0], upper: [0.016, 0.008, 0.016], cells: [4, 2, 4]}
 gravity: [0, 0, -9.81]
@@ -135,7 +144,8 @@ def main():
         return np.abs(a[name] - b[name]).max() / max(np.abs(b[name]).max(), 1e-300)
 
     # Coupled runs add up over ranks in the order messages come in: the same bits on one rank, round-off on several.
-    for name, case, half, end, tolerance in (("grains", GRAINS, "0.02", 0.04, 0), ("bed", BED, "0.005", 0.01, 1e-7)):
+    for name, case, half, end, tolerance in (("grains", GRAINS, "0.02", 0.04, 0), ("plastic", PLASTIC, "0.01", 0.02, 0),
+                                              ("sticky", STICKY, "0.01", 0.02, 0), ("bed", BED, "0.005", 0.01, 1e-7)):
         with Folder(silt, case) as whole, Folder(silt, case) as parts:
             for ranks in (1, 2, 3):
                 figures = EXPECT if name == "grains" else []
