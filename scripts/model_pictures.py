@@ -40,7 +40,7 @@ LAWS = {
     "rolling": [
         (name, "rolling", {"rolling_type": name, "material_bead_rolling_friction": 0.1, "law_table_amplitude": 2e-4, **more}, None)
         for name, more in (("constant", {}), ("spring", {"rolling_stiffness": 2e-2, "rolling_critical_angle": 0.1}),
-                           ("viscous_coulomb", {"rolling_damping": 5e-8, "rolling_length": 1e-5}), ("epsd", {}))
+                           ("viscous_coulomb", {"rolling_damping": 5e-8}), ("epsd", {}))
     ],
     "twisting": [("twisting", "twisting", {"twisting_type": "twisting", "law_table_amplitude": 2e-4}, None)],
     "adhesion": [

@@ -136,6 +136,10 @@ void ContactLaws::check_combination() const {
             throw UserError(fmt::format("-normal_no_attraction and -adhesion_type {} exclude each other", adhesion));
       },
       normal_.model);
+  if (const auto* law = std::get_if<ViscousCoulombRolling>(&rolling_.model); law && law->length)
+    for (int m = 0; m < materials_.count() * materials_.count(); ++m)
+      if (materials_.pair(m / materials_.count(), m % materials_.count()).rolling_friction > 0)
+        throw UserError("-rolling_length and the materials' rolling_friction both say the length g_r: give one");
   if (const auto* spring = std::get_if<SpringRolling>(&rolling_.model); spring && spring->needs_neck() && !soft)
     throw UserError(
         "-rolling_type spring needs -rolling_stiffness (N, positive): only the neck of -adhesion_type jkr or auto has "

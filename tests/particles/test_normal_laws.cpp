@@ -216,6 +216,12 @@ TEST_CASE("Laws with two ways to say a parameter take one of them and refuse bot
       LawCase().set("tangential_type", "viscous").set("tangential_damping", "1").set("tangential_damping_ratio", "1"),
       "not both");
   refused(LawCase().set("rolling_type", "viscous_coulomb"), "-rolling_damping");
+  refused(LawCase().choose("rolling", "viscous_coulomb").set("rolling_length", "1e-5"), "rolling_friction");
+  refused(LawCase()
+              .choose("tangential", "spring_dashpot")
+              .set("tangential_damping", "1")
+              .set("tangential_damping_ratio", "1"),
+          "-tangential_damping_ratio");
   refused(LawCase().set("rolling_type", "spring"), "-rolling_stiffness");
   refused(LawCase().set("normal_type", "hertz"), "tsuji");
 }

@@ -15,16 +15,17 @@ struct SpringDashpot {
                                   "F_t = -(k_t zeta + gamma_t V_t), at most mu |F_n|; at the limit zeta is cut back",
                                   "frequency and decay of a stuck contact"};
   static constexpr bool extended = false;
-  std::optional<double> stiffness, damping;
-  double damping_ratio = 0.5;
+  std::optional<double> stiffness, damping, damping_ratio;
   void options(OptionGroup& option) {
     option("stiffness", stiffness, "N/m", "tangential spring stiffness k_t; needed by spring_dashpot", positive);
     option("damping", damping, "kg/s", "tangential dashpot coefficient gamma_t", non_negative);
-    option("damping_ratio", damping_ratio, "-", "gamma_t as a share of the normal damping where damping is not given",
-           non_negative);
+    option("damping_ratio", damping_ratio, "-",
+           "gamma_t as a share of the normal damping, in place of damping; default: 0.5", non_negative);
   }
   void check() const {
     if (!stiffness) throw UserError("-tangential_type spring_dashpot needs -tangential_stiffness (N/m, positive)");
+    if (damping && damping_ratio)
+      throw UserError("-tangential_damping (kg/s) and -tangential_damping_ratio are both given: give one");
   }
 
   template <class Real>
@@ -32,7 +33,8 @@ struct SpringDashpot {
     Real stiffness, damping, damping_ratio, friction, least_share;
   };
   Constants<double> constants(const PairProperties& pair) const {
-    return {*stiffness, damping.value_or(0), damping ? 0 : damping_ratio, pair.friction, pair.least_share};
+    return {*stiffness, damping.value_or(0), damping ? 0 : damping_ratio.value_or(0.5), pair.friction,
+            pair.least_share};
   }
 
   template <class Real>
