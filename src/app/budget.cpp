@@ -41,6 +41,10 @@ void Budget::start(const OutputDirectory& directory, const Fluid* fluid, Particl
   std::vector<std::string> columns = {"time",           "residual",     "exchange_residual", "particle_residual",
                                       "taken_residual", "mass_residual"};
   if (with_fluid_) add_columns(columns, {"fluid_momentum", "boundary_impulse", "unaccounted"});
+  with_energy_ = fluid != nullptr && fluid->total_energy();
+  if (with_energy_)
+    columns.insert(columns.end(), {"fluid_energy", "energy_supply", "energy_from_particles", "unaccounted_energy",
+                                   "energy_in_transit", "particle_energy"});
   if (with_particles_) {
     add_columns(columns, {"particle_momentum", "gravity", "walls", "drag", "fluid_force", "kicks", "added", "removed",
                           "fields"});
@@ -59,7 +63,18 @@ void Budget::start(const OutputDirectory& directory, const Fluid* fluid, Particl
   }
 }
 
-double Budget::close(const Moment& moment, Particles* particles, const ExchangeLedger* exchange) {
+/// J, what the particles gave a gas in the step.
+double Budget::energy_from(const Coupling* coupling) {
+  double sum = 0;
+  if (const WorkLedger* work = coupling ? coupling->work_ledger() : nullptr)
+    sum += work->given - work->response + work->displaced + work->inserted;
+  if (const HeatLedger* heat = coupling ? coupling->heat_ledger() : nullptr)
+    sum += heat->given + heat->response_on_fluid;
+  return sum;
+}
+
+double Budget::close(const Moment& moment, Particles* particles, const Coupling* coupling) {
+  const ExchangeLedger* exchange = coupling ? &coupling->ledger() : nullptr;
   const double exchange_residual = exchange ? exchange->residual : 0;
   double particle_residual = 0, taken_residual = 0;
   Particles::Impulses in;
@@ -97,11 +112,18 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeL
       unaccounted = moment.fluid_step.momentum - fluid_momentum_ - through;
       if (exchange) unaccounted -= exchange->drag_on_fluid + exchange->response_on_fluid + exchange->pressure_on_fluid;
     }
-    fluid_momentum_ = moment.fluid_step.momentum;
-    fluid_known_ = true;
-    add(row, fluid_momentum_);
+    add(row, moment.fluid_step.momentum);
     add(row, through);
     add(row, unaccounted);
+    if (with_energy_) {
+      const double energy = moment.fluid_step.heat, supply = moment.dt * moment.fluid_step.energy_supply;
+      const double from = energy_from(coupling), left = fluid_known_ ? energy - fluid_energy_ - supply - from : 0;
+      row.insert(row.end(), {energy, supply, from, left, coupling ? coupling->work_ledger()->in_transit : 0,
+                             particles ? particles->kinetic_energy() + particles->rotational_energy() : 0});
+      fluid_energy_ = energy;
+    }
+    fluid_momentum_ = moment.fluid_step.momentum;
+    fluid_known_ = true;
   }
   if (with_particles_) {
     for (const Vec3& v :

@@ -5,6 +5,7 @@
 #include "app/moment.hpp"
 #include "base/csv.hpp"
 #include "base/output_directory.hpp"
+#include "coupling/coupling.hpp"
 #include "coupling/exchange.hpp"
 
 namespace silt {
@@ -26,6 +27,10 @@ struct LedgerOptions {
 ///  - mass_residual: the fluid's volume balance as the fluid reports it, relative to its inflow;
 ///  - unaccounted_*: change of the fluid's momentum less the impulses through the boundary and of the particles; it
 ///    holds the time scheme's and the stabilisation's share and is no residual.
+///  - of a gas, J: fluid_energy (internal and kinetic), energy_supply (boundaries and gravity, in the step),
+///  energy_from_particles (work, heat and displacement), unaccounted_energy: what they leave of the change, the share
+///  of the solver's tolerance and, with BDF2, of the time scheme; energy_in_transit: work done on the particles that
+///  the gas is charged with in the next step; particle_energy: kinetic, of translation and spin.
 ///  - particle_mass, added_mass, removed_mass (kg): what is there, and what came and went in the step; its residual is
 ///    part of particle_residual.
 /// The first three above `-ledger_tolerance` stop the run.
@@ -35,15 +40,17 @@ class Budget {
   /// Opens the file and takes the starting momenta. Collective.
   void start(const OutputDirectory& directory, const Fluid* fluid, Particles* particles);
   /// Closes the account of the step that led to `moment`: writes a row and returns the largest of the gated residuals.
-  /// `exchange` is null without coupling. Throws RunError on every rank when out of balance. Collective.
-  double close(const Moment& moment, Particles* particles, const ExchangeLedger* exchange);
+  /// `coupling` is null without one. Throws RunError on every rank when out of balance. Collective.
+  double close(const Moment& moment, Particles* particles, const Coupling* coupling);
 
  private:
+  static double energy_from(const Coupling* coupling);
+
   LedgerOptions options_;
-  bool with_fluid_, with_particles_;
+  bool with_fluid_, with_particles_, with_energy_ = false;
   CsvWriter table_;
   Vec3 particle_momentum_ = Vec3::Zero(), fluid_momentum_ = Vec3::Zero();
-  double particle_mass_ = 0;
+  double particle_mass_ = 0, fluid_energy_ = 0;
   bool fluid_known_ = false;
 };
 

@@ -84,9 +84,10 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
       restart_->refuse(particles_ ? "has no particles, this case has some" : "has particles, this case has none");
     if (particles_) particles_->load(*restart_, carried_ != nullptr);
   }
-  if (fluid_ && particles_ && options.find("fluid_type").value_or("") == "compressible")
+  if (fluid_ && particles_ && fluid_->total_energy() && options.find("fluid_symmetry").value_or("") == "axisymmetric")
     throw UserError(
-        "-fluid_type compressible carries no particles yet: give -fluid_type incompressible or no -insertion_...");
+        "-fluid_symmetry axisymmetric carries no particles, which move in space: give a mesh in space (or no "
+        "-insertion_...)");
   if (fluid_ && particles_)
     coupling_ = std::make_unique<Coupling>(*mesh_, *particles_, *fluid_, options, case_.gravity);
   if (!coupling_ && options.given("brownian_temperature"))
@@ -325,8 +326,7 @@ void Simulation::attempt() {
 
 void Simulation::report() {
   const Stopwatch watch(*this, writing);
-  if (now_.step > 0)
-    now_.ledger_residual = budget_->close(now_, particles_.get(), coupling_ ? &coupling_->ledger() : nullptr);
+  if (now_.step > 0) now_.ledger_residual = budget_->close(now_, particles_.get(), coupling_.get());
   Quantities quantities;
   diagnostics_->sample(now_, quantities);
   probes_->sample(now_, quantities);

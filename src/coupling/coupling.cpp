@@ -43,7 +43,8 @@ Coupling::Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options
       locator_(mesh),
       kernel_(mesh),
       void_fraction_(mesh),
-      mass_(lumped_mass(mesh)) {
+      mass_(lumped_mass(mesh)),
+      properties_(mesh, fluid) {
   options.read("coupling", options_);
   drag_ = DragModels::read(options, "drag", "gidaspow", "drag law of the particles");
   forces_ = std::make_unique<FluidForces>(mesh, mass_, options, options_.viscous_stress);
@@ -51,6 +52,7 @@ Coupling::Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options
   dispersion_ = Dispersion::create(fluid, particles, options);
   if (particles.has_heat() && !fluid.temperature().empty())
     heat_ = std::make_unique<HeatExchange>(mesh, mass_, particles, fluid, options);
+  if (fluid.total_energy()) work_ = std::make_unique<WorkExchange>(mesh, mass_, particles, fluid);
   if (mesh.dimension == 2) {
     if (!options_.depth)
       throw UserError("coupling_depth: give the thickness in m that the 2D mesh stands for; particles have a volume");
@@ -153,7 +155,7 @@ void Coupling::before_particles(double dt) {
   kernel_.sample(given.empty() ? void_fraction_.previous() : given, alpha, 1);
   if (dispersion_) dispersion_->act(fluid_, *filter_, kernel_, particles_, dt, u);
 
-  const double density = fluid_.density(), viscosity = fluid_.viscosity();
+  properties_.sample(*filter_, kernel_);
   // Model B leaves the whole pressure gradient to the fluid; its drag is then that of model A over alpha (Zhou et al.
   // 2010).
   const bool model_a = fluid_.model_a();
@@ -170,7 +172,9 @@ void Coupling::before_particles(double dt) {
           const auto v = particles_.velocity(p);
           const double* w = &u[3 * p];
           const double speed = (vec3(w) - v).norm();
-          const double k = law.exchange({2 * particles_.radius(p), alpha[p], density, viscosity, speed});
+          const double density = properties_.density(p);
+          const double k = law.exchange({2 * particles_.radius(p), alpha[p], density, properties_.viscosity(p), speed,
+                                         properties_.mach(p, speed)});
           action.exchange = model_a ? k : k / alpha[p];
           const double displaced = buoyant ? density * particles_.volume(p) : 0;
           for (int d = 0; d < 3; ++d) {
@@ -185,9 +189,9 @@ void Coupling::before_particles(double dt) {
       },
       drag_);
   for (int p = 0; p < count; ++p) vec3(particles_.fluid_action(p).reaction).setZero();
-  if (forces_->any()) forces_->act(fluid_, *filter_, kernel_, particles_, last_step_);
-  if (thermophoresis_) thermophoresis_->act(fluid_, *filter_, kernel_, particles_);
-  if (heat_) heat_->before_particles(*filter_, kernel_, alpha);
+  if (forces_->any()) forces_->act(fluid_, properties_, *filter_, kernel_, particles_, last_step_);
+  if (thermophoresis_) thermophoresis_->act(fluid_, properties_, *filter_, kernel_, particles_);
+  if (heat_) heat_->before_particles(properties_, *filter_, kernel_, alpha);
 }
 
 void Coupling::before_fluid(double dt) {
@@ -236,6 +240,7 @@ void Coupling::before_fluid(double dt) {
     exchanged_ += vec3(&q[2]).norm();
   }
   if (heat_) heat_->before_fluid(dt, depth_, *filter_, kernel_);
+  if (work_) work_->before_fluid(dt, depth_, *filter_, kernel_);
   kernel_.deposit(at_particles_, nodal_, load_components);
   for (int i = 0; i < mesh_.nodes; ++i) {
     for (int c = 0; c < load_components; ++c) nodal_[load_components * i + c] /= mass_[i] * depth_;
@@ -280,6 +285,7 @@ void Coupling::after_fluid(double dt) {
   filter_->apply(nodal_.data(), components);
   at_particles_.resize(components * static_cast<std::size_t>(count));
   kernel_.sample(nodal_, at_particles_, components);
+  if (work_) work_->after_fluid(dt, depth_, *filter_, kernel_);
   for (int p = 0; p < count; ++p) {
     FluidAction& action = particles_.fluid_action(p);
     const double* f = &at_particles_[components * static_cast<std::size_t>(p)];
@@ -289,6 +295,7 @@ void Coupling::after_fluid(double dt) {
     if (model_a) pressure = -particles_.volume(p) * dt * vec3(f + 3);
     action.held = r.held;
     vec3(action.owed) = owed - at_once + pressure;
+    if (work_) work_->settle(p, r.mass, at_once, pressure);
     particles_.kick(p, at_once);
     ledger_.response_on_particles += owed;
     ledger_.pressure_on_particles += pressure;
@@ -296,6 +303,7 @@ void Coupling::after_fluid(double dt) {
     ledger_.in_transit += vec3(action.owed);
     exchanged_ += owed.norm() + pressure.norm();
   }
+  if (work_) work_->close(dt, depth_);
   if (heat_) heat_->after_fluid(dt, depth_, *filter_, kernel_);
   void_fraction_.commit(load.void_fraction);
   last_step_ = dt;

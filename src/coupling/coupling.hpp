@@ -13,10 +13,12 @@
 #include "coupling/exchange.hpp"
 #include "coupling/filter.hpp"
 #include "coupling/fluid_forces.hpp"
+#include "coupling/fluid_properties.hpp"
 #include "coupling/heat/heat_exchange.hpp"
 #include "coupling/kernel.hpp"
 #include "coupling/thermophoresis.hpp"
 #include "coupling/void_fraction.hpp"
+#include "coupling/work_exchange.hpp"
 #include "fluid/fluid.hpp"
 #include "particles/particles.hpp"
 
@@ -87,6 +89,8 @@ class Coupling {
   const ExchangeLedger& ledger() const { return ledger_; }
   /// The same of heat; null when fluid or particles have no temperature.
   const HeatLedger* heat_ledger() const { return heat_ ? &heat_->ledger() : nullptr; }
+  /// The same of work; null when the fluid does not solve for its total energy.
+  const WorkLedger* work_ledger() const { return work_ ? &work_->ledger() : nullptr; }
   /// One line for the header of the run: filter, drag law.
   std::string description() const;
   const Filter& filter() const { return *filter_; }
@@ -111,10 +115,12 @@ class Coupling {
   VoidFraction void_fraction_;
   std::vector<double> mass_;  ///< [nodes] m3 (m2 in 2D)
   std::unique_ptr<Filter> filter_;
+  FluidProperties properties_;
   std::unique_ptr<FluidForces> forces_;
   std::unique_ptr<Thermophoresis> thermophoresis_;  ///< null: none
   std::unique_ptr<Dispersion> dispersion_;          ///< null: none
   std::unique_ptr<HeatExchange> heat_;              ///< null: fluid or particles have no temperature
+  std::unique_ptr<WorkExchange> work_;              ///< null: the fluid does not solve for its total energy
   double last_step_ = 0;                            ///< s, the step that led to the present flow; 0: none
   ExchangeLedger ledger_;
   double exchanged_ = 0;  ///< N s, sum of the magnitudes exchanged in this step: the scale of the residual

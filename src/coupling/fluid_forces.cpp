@@ -47,12 +47,16 @@ void FluidForces::make_fields(const Fluid& fluid, double last_step) {
   gradient_.apply(u, 3, slope_);  // slope[i][component][direction]
   nodal_.resize(width_ * nodes);
   if (viscous_stress_) {
-    const double mu = fluid.viscosity();
+    const auto viscosity = fluid.properties().viscosity;
     std::vector<double> tau(9 * nodes);
-    for (std::size_t i = 0; i < nodes; ++i)
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b)
-          tau[9 * i + 3 * a + b] = mu * (slope_[9 * i + 3 * a + b] + slope_[9 * i + 3 * b + a]);
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const double mu = viscosity.empty() ? fluid.viscosity() : viscosity[i];
+      const double* g = &slope_[9 * i];
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) tau[9 * i + 3 * a + b] = mu * (g[3 * a + b] + g[3 * b + a]);
+        if (fluid.total_energy()) tau[9 * i + 4 * a] -= mu * 2.0 / 3 * (g[0] + g[4] + g[8]);  // of a gas
+      }
+    }
     gradient_.apply(tau, 9, second_);
   }
   const auto change = fluid.velocity_change();
@@ -74,22 +78,22 @@ void FluidForces::make_fields(const Fluid& fluid, double last_step) {
   }
 }
 
-void FluidForces::act(const Fluid& fluid, const Filter& filter, const Kernel& kernel, Particles& particles,
-                      double last_step) {
+void FluidForces::act(const Fluid& fluid, const FluidProperties& properties, const Filter& filter, const Kernel& kernel,
+                      Particles& particles, double last_step) {
   make_fields(fluid, last_step);
   filter.apply(nodal_.data(), width_);
   const int count = particles.owned();
   at_particles_.resize(static_cast<std::size_t>(width_) * count);
   kernel.sample(nodal_, at_particles_, width_);
-  const double density = fluid.density(), viscosity = fluid.viscosity();
   std::visit(
       [&](const auto& saffman, const auto& magnus, const auto& torque) {
         for (int p = 0; p < count; ++p) {
           FluidAction& action = particles.fluid_action(p);
           const double* f = &at_particles_[static_cast<std::size_t>(width_) * p];
+          const double density = properties.density(p);
           const ShearFlow flow{2 * particles.radius(p),
                                density,
-                               viscosity,
+                               properties.viscosity(p),
                                vec3(action.velocity) - particles.velocity(p),
                                curl_ >= 0 ? Vec3(vec3(f + curl_)) : Vec3::Zero(),
                                particles.spin(p)};

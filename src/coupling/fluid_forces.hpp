@@ -5,6 +5,7 @@
 
 #include "base/nodal_gradient.hpp"
 #include "coupling/filter.hpp"
+#include "coupling/fluid_properties.hpp"
 #include "coupling/kernel.hpp"
 #include "coupling/lift/magnus.hpp"
 #include "coupling/lift/saffman.hpp"
@@ -37,7 +38,8 @@ class FluidForces {
 
   /// Adds to the FluidAction of every particle, whose fluid velocity is set. `last_step`: the step that led to the
   /// present flow, s; 0 at the start. The kernel holds the particles' places. Collective.
-  void act(const Fluid& fluid, const Filter& filter, const Kernel& kernel, Particles& particles, double last_step);
+  void act(const Fluid& fluid, const FluidProperties& properties, const Filter& filter, const Kernel& kernel,
+           Particles& particles, double last_step);
 
  private:
   void make_fields(const Fluid& fluid, double last_step);

@@ -26,7 +26,8 @@ std::string Thermophoresis::name() const {
   return std::visit([](const auto& law) { return std::string(law.name); }, law_);
 }
 
-void Thermophoresis::act(const Fluid& fluid, const Filter& filter, const Kernel& kernel, Particles& particles) {
+void Thermophoresis::act(const Fluid& fluid, const FluidProperties& properties, const Filter& filter,
+                         const Kernel& kernel, Particles& particles) {
   const auto temperature = fluid.temperature();
   gradient_.apply(temperature, 1, slope_);
   nodal_.resize(4 * static_cast<std::size_t>(mesh_.nodes));
@@ -45,8 +46,8 @@ void Thermophoresis::act(const Fluid& fluid, const Filter& filter, const Kernel&
           const double* f = &at_particles_[4 * static_cast<std::size_t>(p)];
           cold |= !(f[0] > 0);
           const GasAround gas{2 * particles.radius(p),
-                              fluid.density(),
-                              fluid.viscosity(),
+                              properties.density(p),
+                              properties.viscosity(p),
                               f[0],
                               options_.mean_free_path,
                               options_.conductivity_ratio,

@@ -10,6 +10,7 @@
 #include "base/nodal_gradient.hpp"
 #include "base/physical_constants.hpp"
 #include "coupling/filter.hpp"
+#include "coupling/fluid_properties.hpp"
 #include "coupling/kernel.hpp"
 #include "fluid/fluid.hpp"
 #include "particles/particles.hpp"
@@ -106,7 +107,8 @@ class Thermophoresis {
                  const ThermophoresisOptions& options);
   std::string name() const;
   /// Adds to force and reaction of every FluidAction. Collective.
-  void act(const Fluid& fluid, const Filter& filter, const Kernel& kernel, Particles& particles);
+  void act(const Fluid& fluid, const FluidProperties& properties, const Filter& filter, const Kernel& kernel,
+           Particles& particles);
 
  private:
   const Mesh& mesh_;

@@ -18,13 +18,16 @@ struct ParticleLoad {
   std::vector<double> response;       ///< [nodes] kg/s: sum_p w_i K_p; the fluid feels -response (u^{n+1} - u^n)
   std::vector<double> heat;           ///< [nodes] W, load vector: heat that the particles give the fluid
   std::vector<double> heat_response;  ///< [nodes] W/K: the fluid gets heat - heat_response (T^{n+1} - T^n)
+  std::vector<double> energy;  ///< [nodes] W, load vector: minus the work on the particles; for a fluid that solves
+                               ///< for its total energy
   explicit ParticleLoad(int nodes = 0)
       : void_fraction(nodes, 1.0),
         void_fraction_rate(nodes, 0.0),
         force(3 * nodes, 0.0),
         response(nodes, 0.0),
         heat(nodes, 0.0),
-        heat_response(nodes, 0.0) {}
+        heat_response(nodes, 0.0),
+        energy(nodes, 0.0) {}
 };
 
 /// What one fluid step took and left, for the progress line, the diagnostics and the ledger.
@@ -37,6 +40,7 @@ struct FluidStep {
   Vec3 boundary_force =
       Vec3::Zero();  ///< N, pressure, viscous and convective momentum flux through the boundary (into the fluid)
   double heat = 0;   ///< J, at the end of the step, counted from the reference temperature
+  double energy_supply = 0;  ///< W, given to the total energy by boundaries and gravity; compressible flow
 };
 
 /// Volume flow and force per named boundary.
@@ -60,8 +64,23 @@ class Fluid {
 
   ParticleLoad& load() { return load_; }
   const ParticleLoad& load() const { return load_; }
+  /// kg/m3 and Pa s; of a gas at its units' state, and properties() has what holds at the nodes.
   double density() const { return density_; }
   double viscosity() const { return viscosity_; }
+  /// Properties at the nodes: density (kg/m3), viscosity (Pa s), speed of sound (m/s); empty where density() and
+  /// viscosity() hold everywhere.
+  struct Properties {
+    std::span<const double> density, viscosity, sound;
+  };
+  virtual Properties properties() const { return {}; }
+  /// True when the fluid solves for its total energy: what it does to particles must then be taken from that.
+  virtual bool total_energy() const { return false; }
+  /// W, int (p - reference) d(alpha)/dt of the last step: what displacing the fluid took from its total energy.
+  /// Collective.
+  virtual double displacement_power(double reference) const {
+    (void)reference;
+    return 0;
+  }
   /// J/(kg K) and W/(m K); 0 when no energy equation is solved.
   double heat_capacity() const { return heat_capacity_; }
   double conductivity() const { return conductivity_; }

@@ -50,6 +50,7 @@ double Brownian::act(Store& store, const Integration& step, double time) const {
       for (int d = 0; d < 3; ++d) {
         if (step.move[d] == 0) continue;
         const double dv = kick * a[d];
+        drag.impulse[3] += dv / motion.inverse_mass * (motion.velocity[d] + 0.5 * dv);
         motion.velocity[d] += dv;
         motion.position[d] += together * a[d] + alone * b[d];
         drag.impulse[d] += dv / motion.inverse_mass;

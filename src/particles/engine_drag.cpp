@@ -60,12 +60,15 @@ void Engine::prepare_turning(double h) {
 
 void Engine::collect_fluid() {
   if (!fluid_) return;
-  for (int p = 0; p < store.owned; ++p)
+  for (int p = 0; p < store.owned; ++p) {
     for (int d = 0; d < 3; ++d) {
       store.action[p].impulse[d] += store.drag[p].impulse[d];
       impulses.drag[d] += store.drag[p].impulse[d];
       store.drag[p].impulse[d] = 0;
     }
+    store.action[p].work += store.drag[p].impulse[3];
+    store.drag[p].impulse[3] = 0;
+  }
 }
 
 }  // namespace silt

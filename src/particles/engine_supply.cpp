@@ -83,9 +83,11 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
                                : z > 1e-2                      ? (1 - phi / h) * h / z
                                                                : h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z / 120)));
       for (int d = 0; d < (plane_ ? 2 : 3); ++d) {
-        leaving.velocity[d] -= corrector * share * one.motion.inverse_mass * one.carried.force[d];
+        const double slower = corrector * share * one.motion.inverse_mass * one.carried.force[d];
+        leaving.velocity[d] -= slower;
         const double drag = -(corrector * share - 0.5 * h) * one.carried.force[d];
         leaving.action.impulse[d] += drag;
+        leaving.action.work += drag * (leaving.velocity[d] + 0.5 * slower);
         impulses.drag[d] += drag;
       }
     }

@@ -9,6 +9,10 @@ namespace SILT_ISA {
 
 SILT_INLINE Quad quad(const double* p) { return *reinterpret_cast<const Quad*>(p); }
 SILT_INLINE Quad every(double a) { return Quad{a, a, a, a}; }
+SILT_INLINE double scalar_product(const Quad& a, const Quad& b) {
+  const Quad c = a * b;
+  return c[0] + c[1] + c[2];
+}
 
 template <bool correct, bool drift, bool fluid, bool turning>
 void integrate_all(Integration& step) {
@@ -37,13 +41,21 @@ void integrate_all(Integration& step) {
     }
     if constexpr (correct) {
       const Quad change = move * (force - quad(step.previous[p].force));
+      const Quad turned = turn * (torque - quad(step.previous[p].torque));
       if constexpr (fluid) {
-        velocity += every(corrector * share * inverse_mass) * change;
-        impulse += every(corrector * share - 0.5 * h) * change;
+        const Quad faster = every(corrector * share * inverse_mass) * change;
+        const Quad taken = every(corrector * share - 0.5 * h) * change;
+        impulse += taken;
+        // An impulse does the work of the mean of the velocities before and after all that act together.
+        impulse[3] += scalar_product(taken, velocity + every(0.5) * faster);
+        velocity += faster;
       } else {
         velocity += every(corrector * inverse_mass) * change;
       }
-      spin += every(turn_corrector * inverse_inertia) * turn * (torque - quad(step.previous[p].torque));
+      const Quad spun = every(turn_corrector * inverse_inertia) * turned;
+      if constexpr (turning)
+        impulse[3] += scalar_product(every(turn_corrector - 0.5 * h) * turned, spin + every(0.5) * spun);
+      spin += spun;
     }
     if constexpr (drift) {
       Quad steady = every(inverse_mass) * force + gravity;
@@ -52,12 +64,21 @@ void integrate_all(Integration& step) {
         steady += quad(step.drag[p].acceleration);
         acceleration = every(share) * steady + every(step.drag[p].rate) * (quad(step.drag[p].velocity) - velocity);
         impulse += every(1 / inverse_mass) * move * (every(first) * acceleration - every(h) * steady);
+        const Quad others = every(inverse_mass) * force + gravity;
+        impulse[3] += scalar_product(every(1 / inverse_mass) * move * (every(first) * acceleration - every(h) * others),
+                                     velocity + every(0.5 * first) * move * acceleration);
       }
       acceleration *= move;
       const Quad position = quad(motion.position) + (every(h) * move) * velocity + every(second) * acceleration;
       velocity += every(first) * acceleration;
       Quad turned = every(inverse_inertia) * torque;
-      if constexpr (turning) turned += every(step.turning[p].rate) * (quad(step.turning[p].spin) - spin);
+      if constexpr (turning) {
+        const Quad others = turned;
+        turned += every(step.turning[p].rate) * (quad(step.turning[p].spin) - spin);
+        impulse[3] +=
+            scalar_product(every(1 / inverse_inertia) * turn * (every(turn_first) * turned - every(h) * others),
+                           spin + every(0.5 * turn_first) * turn * turned);
+      }
       turned *= every(turn_first) * turn;
       spin += turned;
       if (step.orientation) {

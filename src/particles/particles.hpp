@@ -30,6 +30,8 @@ struct FluidAction {
   double spin[3] = {0, 0, 0};  ///< rad/s, half the fluid's vorticity
   double field_impulse[3] = {0, 0, 0};  ///< N s, received from magnetic and other fields since the coupling reset it
   double spin_exchange = 0;  ///< N m s, viscous torque spin_exchange (spin - w), relaxed exactly in the substeps
+  double work =
+      0;  ///< J, done on the particle by the fluid (drag, `force`, viscous torque) since the coupling reset it
 };
 
 /// Counts of one advance(), for the progress line and the diagnostics (global).

@@ -95,7 +95,7 @@ struct alignas(64) DragStep {
   double velocity[3];      ///< m/s, u
   double share;            ///< m/(m + added mass): what of every force accelerates the particle
   double acceleration[4];  ///< m/s2, other fluid forces over the mass
-  double impulse[4];       ///< N s, drag impulse received; summed up
+  double impulse[4];       ///< N s, drag impulse received; in the last place J, the work of the fluid; summed up
   double rate;             ///< 1/s, k/m
   double first;            ///< s, phi = (1 - exp(-rate h))/rate; h without drag
   double second;           ///< s2, psi = (h - phi)/rate; h^2/2 without drag

@@ -11,6 +11,7 @@ struct FlowAround {
   double density;        ///< kg/m3, of the fluid
   double viscosity;      ///< Pa s, of the fluid
   double speed;          ///< m/s, |u - v|, u the interstitial velocity
+  double mach = 0;       ///< speed over the fluid's speed of sound; 0 where that is not solved for
 
   /// Exchange coefficient of Stokes' drag, 3 pi mu d. kg/s
   double stokes() const { return 3 * std::numbers::pi * viscosity * diameter; }

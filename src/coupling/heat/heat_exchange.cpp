@@ -29,7 +29,8 @@ std::string HeatExchange::name() const {
   return std::visit([](const auto& law) { return std::string(law.name); }, nusselt_);
 }
 
-void HeatExchange::before_particles(const Filter& filter, const Kernel& kernel, std::span<const double> alpha) {
+void HeatExchange::before_particles(const FluidProperties& properties, const Filter& filter, const Kernel& kernel,
+                                    std::span<const double> alpha) {
   const auto T = fluid_.temperature();
   nodal_.assign(T.begin(), T.end());
   filter.apply(nodal_.data(), 1);
@@ -37,18 +38,18 @@ void HeatExchange::before_particles(const Filter& filter, const Kernel& kernel, 
   at_particles_.resize(count);
   kernel.sample(nodal_, at_particles_, 1);
   Columns& columns = particles_.columns();
-  const double conductivity = fluid_.conductivity(),
-               prandtl = fluid_.viscosity() * fluid_.heat_capacity() / conductivity;
+  // The same everywhere, also in a gas whose viscosity changes with temperature.
+  const double prandtl = fluid_.viscosity() * fluid_.heat_capacity() / fluid_.conductivity();
   std::visit(
       [&](const auto& law) {
         for (int p = 0; p < count; ++p) {
           const double diameter = 2 * particles_.radius(p);
           const double speed = (vec3(particles_.fluid_action(p).velocity) - particles_.velocity(p)).norm();
-          const double reynolds = fluid_.density() * diameter * speed / fluid_.viscosity();
+          const double reynolds = properties.density(p) * diameter * speed / properties.viscosity(p);
           *columns.row(outside_, p) = at_particles_[p];
           // h A = Nu lambda/d pi d^2
           *columns.row(exchange_, p) =
-              law.nusselt({reynolds, prandtl, alpha[p]}) * conductivity * std::numbers::pi * diameter;
+              law.nusselt({reynolds, prandtl, alpha[p]}) * properties.conductivity(p) * std::numbers::pi * diameter;
           *columns.row(received_, p) = 0;
         }
       },

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "coupling/filter.hpp"
+#include "coupling/fluid_properties.hpp"
 #include "coupling/heat/nusselt.hpp"
 #include "coupling/kernel.hpp"
 #include "fluid/fluid.hpp"
@@ -30,7 +31,8 @@ class HeatExchange {
 
   /// Sets what the particles relax to; their velocities relative to the fluid are those of FluidAction. `alpha`: at the
   /// particles. Collective, like the others.
-  void before_particles(const Filter& filter, const Kernel& kernel, std::span<const double> alpha);
+  void before_particles(const FluidProperties& properties, const Filter& filter, const Kernel& kernel,
+                        std::span<const double> alpha);
   /// Sets heat and heat_response of the fluid's load. The kernel holds owned particles, then those departed.
   void before_fluid(double dt, double depth, const Filter& filter, const Kernel& kernel);
   /// Settles the rest. Throws RunError on all ranks when out of balance.

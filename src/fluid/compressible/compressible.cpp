@@ -77,6 +77,7 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
   const size_t n = mesh.nodes, m = system_.size();
   velocity_.assign(3 * n, 0.0), velocity_change_ = pressure_gradient_ = velocity_;
   pressure_.assign(n, 0.0), temperature_change_ = mach_ = density_field_ = temperature_ = pressure_;
+  viscosity_field_ = sound_ = pressure_;
   bool bad = false;
   for (size_t i = 0; i < n; ++i) {
     const Vec3 x = vec3(&mesh.node_coordinates[3 * i]);
@@ -185,7 +186,8 @@ void Compressible::prepare(double time, double dt) {
     }
     step_.response[i] = load_.response[i] * u0_ / p0_;
     // Heat with its response: heat - response (T - T^n).
-    step_.force[i * m + m - 1] = (load_.heat[i] + load_.heat_response[i] * T0_ * state_[i * m + m - 1]) / (p0_ * u0_);
+    step_.force[i * m + m - 1] =
+        (load_.energy[i] + load_.heat[i] + load_.heat_response[i] * T0_ * state_[i * m + m - 1]) / (p0_ * u0_);
     step_.heat[i] /= p0_ * u0_;
     step_.heat_coefficient[i] = (step_.heat_coefficient[i] + load_.heat_response[i]) * T0_ / (p0_ * u0_);
     if (thermal_.fixed()[i]) step_.prescribed_temperature[i] = thermal_.given(static_cast<int>(i), time + dt) / T0_;
@@ -198,13 +200,20 @@ void Compressible::prepare(double time, double dt) {
       step_.source[i * m + m - 1] = energy / (p0_ * u0_);
     }
   }
+  const double steps = mpi_max(n > 0 ? past_[0] : 0.0), last = mpi_max(n > 0 ? past_[1] : 0.0);
+  if (steps == 0 && dt > 0) {  // what there is at the start leaves room for the particles that are there
+    for (size_t i = 0; i < n; ++i) step_.alpha[i] -= dt * load_.void_fraction_rate[i];
+    conserved_ = system_.conserved(step_, state_);
+    step_.alpha = load_.void_fraction;
+  }
   // What the conditions prescribe holds from the guess on.
   system_.impose(step_, state_);
   step_.known.assign(n * m, 0.0);
   step_.rate = 0;
   if (dt <= 0) return;
-  const double steps = mpi_max(n > 0 ? past_[0] : 0.0), last = mpi_max(n > 0 ? past_[1] : 0.0);
-  const bool second = order_ == 2 && steps > 0;
+  // An impulsive start among particles keeps its momentum and energy with three BDF1 steps (coupling.md).
+  const bool laden = mpi_max(n > 0 ? *std::max_element(load_.response.begin(), load_.response.end()) : 0.0) > 0;
+  const bool second = order_ == 2 && steps >= (laden ? 3 : 1);
   const Bdf bdf = second ? Bdf::second(dt * u0_, last * u0_) : Bdf::first(dt * u0_);
   step_.rate = bdf.c0;
   for (size_t k = 0; k < n * m; ++k)
@@ -253,7 +262,7 @@ FluidStep Compressible::advance(double time, double dt) {
   conserved_ = system_.conserved(step_, state_);
   for (size_t k = 0; k < n * m; ++k) rate_[k] = step_.rate * conserved_[k] + step_.known[k];
   for (size_t i = 0; i < n; ++i) {
-    past_[2 * i] = std::min(past_[2 * i] + 1, 2.0);
+    past_[2 * i] = std::min(past_[2 * i] + 1, 3.0);
     past_[2 * i + 1] = dt;
     for (size_t k = 0; k + 2 < m; ++k)
       velocity_change_[3 * i + k] = (state_[i * m + 1 + k] - before[i * m + 1 + k]) * u0_;
@@ -279,7 +288,9 @@ void Compressible::from_state() {
     pressure_[i] = s[0] * p0_;
     temperature_[i] = s[m - 1] * T0_;
     density_field_[i] = s[0] / s[m - 1] * p0_ / (u0_ * u0_);
-    mach_[i] = std::sqrt(speed2 / (step_.law.gamma * s[m - 1]));
+    viscosity_field_[i] = step_.law.mu(s[m - 1]) * p0_ / u0_;
+    sound_[i] = std::sqrt(step_.law.gamma * s[m - 1]) * u0_;
+    mach_[i] = std::sqrt(speed2) * u0_ / sound_[i];
   }
   find_pressure_gradient();
 }

@@ -45,6 +45,9 @@ class Compressible final : public Fluid {
   std::span<const double> pressure_gradient() const override { return pressure_gradient_; }
   std::span<const double> temperature() const override { return temperature_; }
   std::span<const double> temperature_change() const override { return temperature_change_; }
+  Properties properties() const override { return {density_field_, viscosity_field_, sound_}; }
+  bool total_energy() const override { return true; }
+  double displacement_power(double reference) const override;
   std::vector<Scalar> scalars() const override;
   std::vector<BoundaryFlow> boundary_flow() const override;
   std::vector<StateArray> state() override;
@@ -83,8 +86,8 @@ class Compressible final : public Fluid {
   std::vector<double> state_;                      ///< [nodes][size] p, u, T in those units
   std::vector<double> conserved_, old_conserved_;  ///< alpha U of steps n and n-1
   std::vector<double> rate_;                       ///< [nodes][size] rate of change of the last step
-  std::vector<double> past_;                       ///< [nodes][2] steps taken (up to 2), s of the last one
-  std::vector<double> velocity_, pressure_, temperature_, density_field_, mach_;
+  std::vector<double> past_;                       ///< [nodes][2] steps taken (up to 3), s of the last one
+  std::vector<double> velocity_, pressure_, temperature_, density_field_, viscosity_field_, sound_, mach_;
   std::vector<double> velocity_change_, temperature_change_, pressure_gradient_;
   int last_newton_ = 0;
 };

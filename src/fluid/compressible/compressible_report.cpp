@@ -35,6 +35,28 @@ void Compressible::find_pressure_gradient() {
   for (int i = 0; i < mesh_.nodes; ++i) vec3(&pressure_gradient_[3 * static_cast<size_t>(i)]) /= mass_[i];
 }
 
+double Compressible::displacement_power(double reference) const {
+  const FlowTable& table = flow_table(mesh_.cell, 1);
+  const int nv = mesh_.nodes_per_cell;
+  double sum = 0;
+  for (int c = 0; c < mesh_.cells; ++c) {
+    const double* x = &mesh_.cell_coordinates[3 * static_cast<size_t>(c) * nv];
+    const int* node = &mesh_.cell_nodes[static_cast<size_t>(c) * nv];
+    for (int q = 0; q < table.points; ++q) {
+      Mat3 J = Mat3::Zero();
+      double p = -reference, rate = 0;
+      for (int a = 0; a < nv; ++a) {
+        J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
+        p += table.M[q][a] * pressure_[node[a]];
+        rate += table.M[q][a] * load_.void_fraction_rate[node[a]];
+      }
+      if (mesh_.dimension == 2) J(2, 2) = 1;
+      sum += table.weight[q] * J.determinant() * p * rate;
+    }
+  }
+  return mpi_sum(sum);
+}
+
 std::vector<BoundaryFlow> Compressible::boundary_flow() const {
   const double around = step_.axisymmetric ? 2 * M_PI : 1;
   const auto flows = system_.boundary_flow(step_, state_);
@@ -60,7 +82,9 @@ FluidStep Compressible::report() const {
     sum += flow.mass;
     inflow += std::max(0.0, -flow.mass);
     step.boundary_force -= around * p0_ * flow.momentum;
+    step.energy_supply -= around * p0_ * u0_ * flow.energy;
   }
+  for (int i = 0; i < mesh_.dimension; ++i) step.energy_supply += step_.gravity[i] * u0_ * u0_ * step.momentum[i];
   step.mass_residual = -(sum + rate[0]) / (inflow > 0 ? inflow : 1.0);
   return step;
 }

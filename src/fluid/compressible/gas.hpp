@@ -14,14 +14,19 @@ struct GasLaw {
   double sutherland = 0;  ///< S/T_0; 0 with `constant`
   bool constant_viscosity = true;
 
-  double cv() const { return 1 / (gamma - 1); }
-  double cp() const { return gamma / (gamma - 1); }
+  // Inlined always: code of a unit for one instruction set must not serve others.
+  [[gnu::always_inline]] double cv() const { return 1 / (gamma - 1); }
+  [[gnu::always_inline]] double cp() const { return gamma / (gamma - 1); }
   /// Sutherland (1893): mu = mu_0 T^1.5 (1 + S)/(T + S).                                                      (C4)
-  double mu(double T) const {
-    return constant_viscosity ? viscosity : viscosity * T * std::sqrt(T) * (1 + sutherland) / (T + sutherland);
+  template <class S>
+  S mu(const S& T) const {
+    if (constant_viscosity) return T * 0.0 + viscosity;
+    return T * square_root(T) * (viscosity * (1 + sutherland)) / (T + sutherland);
   }
-  double mu_slope(double T) const { return constant_viscosity ? 0 : mu(T) * (1.5 / T - 1 / (T + sutherland)); }
-  double conductivity(double T) const { return mu(T) * cp() / prandtl; }
+  template <class S>
+  S mu_slope(const S& T) const {
+    return constant_viscosity ? S{} : S(mu(T) * (1.5 / T - 1.0 / (T + sutherland)));
+  }
 };
 
 /// Pressure, velocity, temperature at a point; S is double or a dual number.
@@ -56,12 +61,12 @@ struct GasState {
 };
 
 /// d(conserved)/d(p, u, T), row by row.
-template <int dim>
-void conserved_slope(const GasLaw& gas, const GasState<double, dim>& s, double (&A)[dim + 2][dim + 2]) {
-  const double rho = s.density(), k = s.kinetic();
+template <class S, int dim>
+void conserved_slope(const GasLaw& gas, const GasState<S, dim>& s, S (&A)[dim + 2][dim + 2]) {
+  const S rho = s.density(), k = s.kinetic();
   for (auto& row : A)
-    for (double& a : row) a = 0;
-  A[0][0] = 1 / s.T;
+    for (S& a : row) a = S{};
+  A[0][0] = 1.0 / s.T;
   A[0][dim + 1] = -rho / s.T;
   for (int i = 0; i < dim; ++i) {
     A[1 + i][0] = s.u[i] / s.T;
@@ -69,20 +74,20 @@ void conserved_slope(const GasLaw& gas, const GasState<double, dim>& s, double (
     A[1 + i][dim + 1] = -rho * s.u[i] / s.T;
     A[dim + 1][1 + i] = rho * s.u[i];
   }
-  A[dim + 1][0] = gas.cv() + k / s.T;
+  A[dim + 1][0] = k / s.T + gas.cv();
   A[dim + 1][dim + 1] = -rho * k / s.T;
 }
 
 /// d(flux in direction i)/d(p, u, T).
-template <int dim>
-void flux_slope(const GasLaw& gas, const GasState<double, dim>& s, int i, double (&A)[dim + 2][dim + 2]) {
-  double U[dim + 2];
+template <class S, int dim>
+void flux_slope(const GasLaw& gas, const GasState<S, dim>& s, int i, S (&A)[dim + 2][dim + 2]) {
+  S U[dim + 2];
   s.conserved(gas, U);
   conserved_slope(gas, s, A);
   for (auto& row : A)
-    for (double& a : row) a *= s.u[i];
+    for (S& a : row) a *= s.u[i];
   for (int k = 0; k < dim + 2; ++k) A[k][1 + i] += U[k];
-  A[1 + i][0] += 1;
+  A[1 + i][0] += 1.0;
   A[dim + 1][0] += s.u[i];
   A[dim + 1][1 + i] += s.p;
 }

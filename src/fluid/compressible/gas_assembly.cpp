@@ -11,9 +11,10 @@ void GasSystem::gather(const GasStep& step, const std::vector<double>& state, in
   out.rate = step.rate;
   out.axisymmetric = step.axisymmetric;
   std::copy_n(step.gravity, 3, out.gravity);
+  out.porous = true;
   for (int a = 0; a < GasCell<C>::nodes; ++a) {
     const size_t i = mesh_.cell_nodes[static_cast<size_t>(c) * GasCell<C>::nodes + a];
-    std::copy_n(&mesh_.cell_coordinates[3 * (static_cast<size_t>(c) * GasCell<C>::nodes + a)], 3, out.x[a]);
+    std::copy_n(&mesh_.cell_coordinates[3 * (static_cast<size_t>(c) * GasCell<C>::nodes + a)], dim, out.x[a]);
     const double* s = &state[i * m];
     out.state[a].p = s[0];
     for (int k = 0; k < dim; ++k) out.state[a].u[k] = s[1 + k];
@@ -59,24 +60,39 @@ void GasSystem::freeze(GasStep& step, const std::vector<double>& state, const st
   }
 }
 
-template <Cell C>
 PetscErrorCode GasSystem::cells(const GasStep& step, const std::vector<double>& state, double* residual,
                                 Mat matrix) const {
   PetscFunctionBeginUser;
-  constexpr int n = GasCell<C>::nodes, m = GasCell<C>::size, rows = GasCell<C>::rows, each = GasCell<C>::dim * m * m;
-  const FlowTable& table = flow_table(C, 1);
-  std::vector<double> r(rows), K(matrix ? static_cast<size_t>(rows) * rows : 0);
-  GasCell<C> cell;
-  for (int c = 0; c < mesh_.cells; ++c) {
-    gather(step, state, c, cell);
-    const int* node = &mesh_.cell_nodes[static_cast<size_t>(c) * n];
-    gas_cell<C>(cell, step.law, table, &step.frozen.carried[static_cast<size_t>(each) * c], step.frozen.viscosity[c],
-                r.data(), matrix ? K.data() : nullptr);
-    for (int a = 0; a < n; ++a)
-      for (int k = 0; k < m; ++k) residual[static_cast<size_t>(node[a]) * m + k] += r[a * m + k];
-    if (!matrix) continue;
-    constrain(step, n, node, K.data());
-    PetscCall(MatSetValuesBlockedLocal(matrix, n, node, n, node, K.data(), ADD_VALUES));
+  const int n = mesh_.nodes_per_cell, m = size(), rows = n * m;
+  GasData data{&flow_table(mesh_.cell, 1),
+               step.law,
+               mesh_.cell_nodes.data(),
+               mesh_.cell_coordinates.data(),
+               state.data(),
+               step.known.data(),
+               step.source.data(),
+               step.alpha.data(),
+               step.alpha_rate.data(),
+               step.frozen.carried.data(),
+               step.frozen.viscosity.data(),
+               step.rate,
+               {step.gravity[0], step.gravity[1], step.gravity[2]},
+               step.axisymmetric,
+               false};
+  for (int i = 0; i < mesh_.nodes && !data.porous; ++i) data.porous = step.alpha[i] != 1 || step.alpha_rate[i] != 0;
+  const size_t each = static_cast<size_t>(rows) * rows;
+  std::vector<double> r(static_cast<size_t>(loop_.lanes) * rows), K(matrix ? loop_.lanes * each : 0);
+  for (int first = 0; first < mesh_.cells; first += loop_.lanes) {
+    const int count = std::min(loop_.lanes, mesh_.cells - first);
+    loop_.evaluate(data, first, count, r.data(), matrix ? K.data() : nullptr);
+    for (int l = 0; l < count; ++l) {
+      const int* node = &mesh_.cell_nodes[static_cast<size_t>(first + l) * n];
+      for (int a = 0; a < n; ++a)
+        for (int k = 0; k < m; ++k) residual[static_cast<size_t>(node[a]) * m + k] += r[(l * n + a) * m + k];
+      if (!matrix) continue;
+      constrain(step, n, node, &K[l * each]);
+      PetscCall(MatSetValuesBlockedLocal(matrix, n, node, n, node, &K[l * each], ADD_VALUES));
+    }
   }
   PetscFunctionReturn(0);
 }
@@ -129,20 +145,7 @@ PetscErrorCode GasSystem::facets(const GasStep& step, const std::vector<double>&
 PetscErrorCode GasSystem::assemble(const GasStep& step, const std::vector<double>& state, double* residual,
                                    Mat matrix) const {
   PetscFunctionBeginUser;
-  switch (mesh_.cell) {
-    case Cell::triangle:
-      PetscCall(cells<Cell::triangle>(step, state, residual, matrix));
-      break;
-    case Cell::quadrilateral:
-      PetscCall(cells<Cell::quadrilateral>(step, state, residual, matrix));
-      break;
-    case Cell::tetrahedron:
-      PetscCall(cells<Cell::tetrahedron>(step, state, residual, matrix));
-      break;
-    case Cell::hexahedron:
-      PetscCall(cells<Cell::hexahedron>(step, state, residual, matrix));
-      break;
-  }
+  PetscCall(cells(step, state, residual, matrix));
   PetscCall(dimension_ == 2 ? facets<2>(step, state, residual, matrix) : facets<3>(step, state, residual, matrix));
   nodes(step, state, residual);
   PetscFunctionReturn(0);

@@ -2,10 +2,19 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "fluid/compressible/gas_kernel.hpp"
 
 namespace silt {
+
+/// What is held fixed while Newton iterates: the test function's part that is carried along (A_i tau), and the
+/// viscosity that captures discontinuities. [cells]
+struct GasFrozen {
+  std::vector<double> carried;  ///< [cells][dim][size][size]
+  std::vector<double> viscosity;
+  std::vector<double> first_order;  ///< its bound
+};
 
 /// Factors of the shock capturing.
 struct CapturingFactors {
@@ -52,7 +61,7 @@ double freeze_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& t
     for (int a = 0; a < nodes; ++a)
       for (int i = 0; i < dim; ++i) g[a][i] += w * point.g[a][i];
     double R[size];
-    strong_residual<C>(cell, at, point, table.M[q], R);
+    strong_residual<C, double>(cell, at, point, table.M[q], R);
     residual2 += w * entropy_norm(R);
     for (int i = 0; i < dim; ++i) {
       double V[size] = {};

@@ -1,51 +1,44 @@
+// The element loop, for one number (double) or for a pack of lanes, one cell a lane. In the units that are compiled for
+// one instruction set only packs are used, so that no code for a newer machine can replace another's.
 #pragma once
-#include <vector>
-
 #include "fluid/assembly/flow_table.hpp"
 #include "fluid/compressible/gas.hpp"
 
 namespace silt {
 
 /// What a cell of the compressible equations reads, gathered; in the units of GasLaw. Compressible.md names the terms.
-template <Cell C>
+template <Cell C, class V = double>
 struct GasCell {
   static constexpr int dim = cell_dimension(C), nodes = cell_nodes(C), size = dim + 2, rows = nodes * size;
-  double x[nodes][3];
-  GasState<double, dim> state[nodes];
-  double alpha[nodes], alpha_rate[nodes];
-  double known[nodes][size];   ///< history of the rate of change
-  double source[nodes][size];  ///< given, per volume
-  double rate = 0;             ///< factor of U^{n+1} in the rate of change
+  V x[nodes][dim];
+  GasState<V, dim> state[nodes];
+  V alpha[nodes], alpha_rate[nodes];
+  V known[nodes][size];   ///< history of the rate of change
+  V source[nodes][size];  ///< given, per volume
+  double rate = 0;        ///< factor of U^{n+1} in the rate of change
   double gravity[3] = {};
   bool axisymmetric = false;  ///< y is the distance from the axis
-};
-
-/// What is held fixed while Newton iterates: the test function's part that is carried along (A_i tau), and the
-/// viscosity that captures discontinuities. [cells]
-struct GasFrozen {
-  std::vector<double> carried;  ///< [cells][dim][size][size]
-  std::vector<double> viscosity;
-  std::vector<double> first_order;  ///< its bound
+  bool porous = true;         ///< false: alpha is 1 everywhere and at rest
 };
 
 /// One quadrature point of a cell: shape gradients, volume (times radius).
-template <Cell C>
+template <Cell C, class V = double>
 struct GasPoint {
   static constexpr int dim = cell_dimension(C), nodes = cell_nodes(C);
-  double g[nodes][dim], volume, radius;
+  V g[nodes][dim], volume, radius;
 
-  void map(const GasCell<C>& cell, const double (*dM)[3], const double* M, double weight) {
-    double J[dim][dim] = {}, inverse[dim][dim];
-    radius = 0;
+  void map(const GasCell<C, V>& cell, const double (*dM)[3], const double* M, double weight) {
+    V J[dim][dim] = {}, inverse[dim][dim];
+    radius = V{};
     for (int a = 0; a < nodes; ++a) {
       radius += M[a] * cell.x[a][1];
       for (int i = 0; i < dim; ++i)
         for (int d = 0; d < dim; ++d) J[i][d] += cell.x[a][i] * dM[a][d];
     }
-    double determinant;
+    V determinant;
     if constexpr (dim == 2) {
       determinant = J[0][0] * J[1][1] - J[0][1] * J[1][0];
-      const double r = 1 / determinant;
+      const V r = 1.0 / determinant;
       inverse[0][0] = J[1][1] * r, inverse[0][1] = -J[0][1] * r, inverse[1][0] = -J[1][0] * r,
       inverse[1][1] = J[0][0] * r;
     } else {
@@ -55,32 +48,34 @@ struct GasPoint {
           inverse[j][i] = J[i1][j1] * J[i2][j2] - J[i1][j2] * J[i2][j1];
         }
       determinant = J[0][0] * inverse[0][0] + J[0][1] * inverse[1][0] + J[0][2] * inverse[2][0];
+      const V r = 1.0 / determinant;
       for (auto& row : inverse)
-        for (double& v : row) v /= determinant;
+        for (V& v : row) v *= r;
     }
-    volume = weight * determinant * (cell.axisymmetric ? radius : 1.0);
+    volume = determinant * weight;
+    if (cell.axisymmetric) volume *= radius;
     for (int a = 0; a < nodes; ++a)
       for (int j = 0; j < dim; ++j) {
-        g[a][j] = 0;
-        for (int d = 0; d < dim; ++d) g[a][j] += inverse[d][j] * dM[a][d];
+        g[a][j] = inverse[0][j] * dM[a][0];
+        for (int d = 1; d < dim; ++d) g[a][j] += inverse[d][j] * dM[a][d];
       }
   }
 };
 
 /// Nodal conserved quantities, fluxes and rates of change less the sources, times the void fraction.
-template <Cell C>
+template <Cell C, class V = double>
 struct GasNodes {
   static constexpr int dim = cell_dimension(C), nodes = cell_nodes(C), size = dim + 2;
-  double U[nodes][size], F[nodes][dim][size], rate[nodes][size];
+  V U[nodes][size], F[nodes][dim][size], rate[nodes][size];
 
-  GasNodes(const GasCell<C>& cell, const GasLaw& gas) {
+  GasNodes(const GasCell<C, V>& cell, const GasLaw& gas) {
     for (int a = 0; a < nodes; ++a) {
       cell.state[a].conserved(gas, U[a]);
       for (int i = 0; i < dim; ++i) {
         double n[3] = {};
         n[i] = 1;
         cell.state[a].flux(gas, n, F[a][i]);
-        for (double& f : F[a][i]) f *= cell.alpha[a];
+        for (V& f : F[a][i]) f *= cell.alpha[a];
       }
       for (int k = 0; k < size; ++k) {
         U[a][k] *= cell.alpha[a];
@@ -95,12 +90,12 @@ struct GasNodes {
 };
 
 /// The conservative residual at a point without viscous terms (C6): rate + div F + 1/r terms - sources.
-template <Cell C>
-void strong_residual(const GasCell<C>& cell, const GasNodes<C>& at, const GasPoint<C>& point, const double* M,
-                     double (&R)[cell_dimension(C) + 2]) {
+template <Cell C, class V>
+void strong_residual(const GasCell<C, V>& cell, const GasNodes<C, V>& at, const GasPoint<C, V>& point, const double* M,
+                     V (&R)[cell_dimension(C) + 2]) {
   constexpr int dim = GasCell<C>::dim, nodes = GasCell<C>::nodes, size = dim + 2;
-  double p = 0, alpha_rate = 0, slope[dim] = {};
-  for (double& r : R) r = 0;
+  V p{}, alpha_rate{}, slope[dim] = {};
+  for (V& r : R) r = V{};
   for (int a = 0; a < nodes; ++a) {
     p += M[a] * cell.state[a].p;
     alpha_rate += M[a] * cell.alpha_rate[a];
@@ -109,7 +104,7 @@ void strong_residual(const GasCell<C>& cell, const GasNodes<C>& at, const GasPoi
       R[k] += M[a] * at.rate[a][k];
       for (int i = 0; i < dim; ++i) R[k] += point.g[a][i] * at.F[a][i][k];
       if (cell.axisymmetric) {
-        double radial = at.F[a][1][k];
+        V radial = at.F[a][1][k];
         if (k == 2) radial -= cell.alpha[a] * cell.state[a].p;
         R[k] += M[a] * radial / point.radius;
       }
@@ -120,29 +115,30 @@ void strong_residual(const GasCell<C>& cell, const GasNodes<C>& at, const GasPoi
 }
 
 /// Residual [rows] and, when not null, Jacobian [rows][rows] of a cell.
-template <Cell C>
-void gas_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& table, const double* carried,
-              double capturing, double* residual, double* matrix) {
+template <Cell C, class V>
+void gas_cell(const GasCell<C, V>& cell, const GasLaw& gas, const FlowTable& table, const V* carried, V capturing,
+              V* residual, V* matrix) {
   constexpr int dim = GasCell<C>::dim, nodes = GasCell<C>::nodes, size = dim + 2, rows = nodes * size;
-  const GasNodes<C> at(cell, gas);
+  const bool viscous = gas.viscosity > 0;
+  const GasNodes<C, V> at(cell, gas);
   const auto P = [&](int i, int k, int l) { return carried[(i * size + k) * size + l]; };
-  for (int k = 0; k < rows; ++k) residual[k] = 0;
+  for (int k = 0; k < rows; ++k) residual[k] = V{};
   // Jacobian of the terms linear in nodal U and F, as weights of their slopes: [a][b] of size x size each.
-  double mass[nodes][nodes] = {}, spread[nodes][nodes] = {}, testU[nodes][nodes][dim] = {}, ofF[nodes][nodes][dim] = {},
-         testF[nodes][nodes][dim][dim] = {}, testR[nodes][nodes][dim] = {};
+  V mass[nodes][nodes] = {}, spread[nodes][nodes] = {}, testU[nodes][nodes][dim] = {}, ofF[nodes][nodes][dim] = {},
+    testF[nodes][nodes][dim][dim] = {}, testR[nodes][nodes][dim] = {};
   if (matrix)
-    for (int k = 0; k < rows * rows; ++k) matrix[k] = 0;
-  const auto K = [&](int a, int k, int b, int l) -> double& { return matrix[(a * size + k) * rows + b * size + l]; };
-  GasPoint<C> point;
+    for (int k = 0; k < rows * rows; ++k) matrix[k] = V{};
+  const auto K = [&](int a, int k, int b, int l) -> V& { return matrix[(a * size + k) * rows + b * size + l]; };
+  GasPoint<C, V> point;
   for (int q = 0; q < table.points; ++q) {
     const double* M = table.M[q];
     point.map(cell, table.dM[q], M, table.weight[q]);
-    const double w = point.volume;
-    double R[size];
-    strong_residual<C>(cell, at, point, M, R);
+    const V w = point.volume;
+    V R[size];
+    strong_residual<C, V>(cell, at, point, M, R);
     // State at the point.
-    double p = 0, T = 0, u[dim] = {}, gu[dim][dim] = {}, gT[dim] = {}, alpha = 0, alpha_rate = 0, slope[dim] = {};
-    double rate[size] = {}, F[dim][size] = {}, gU[dim][size] = {};
+    V p{}, T{}, u[dim] = {}, gu[dim][dim] = {}, gT[dim] = {}, alpha{}, alpha_rate{}, slope[dim] = {};
+    V rate[size] = {}, F[dim][size] = {}, gU[dim][size] = {};
     for (int a = 0; a < nodes; ++a) {
       const auto& s = cell.state[a];
       p += M[a] * s.p, T += M[a] * s.T, alpha += M[a] * cell.alpha[a], alpha_rate += M[a] * cell.alpha_rate[a];
@@ -158,26 +154,32 @@ void gas_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& table,
       }
       for (int k = 0; k < size; ++k) rate[k] += M[a] * at.rate[a][k];
     }
-    // Viscous stress and heat flux.
-    const double mu = alpha * gas.mu(T), conductivity = alpha * gas.conductivity(T), stiff = gas.mu_slope(T) * alpha;
-    const double hoop = cell.axisymmetric ? u[1] / point.radius : 0;
-    double divergence = hoop, tau[dim][dim], V[dim][size] = {};
-    for (int i = 0; i < dim; ++i) divergence += gu[i][i];
-    for (int i = 0; i < dim; ++i)
-      for (int j = 0; j < dim; ++j) tau[i][j] = gu[i][j] + gu[j][i] - (i == j ? 2.0 / 3 * divergence : 0.0);  // over mu
-    const double tau_hoop = 2 * hoop - 2.0 / 3 * divergence;
-    for (int j = 0; j < dim; ++j) {
-      for (int i = 0; i < dim; ++i) {
-        V[j][1 + i] = mu * tau[i][j];
-        V[j][dim + 1] += mu * u[i] * tau[i][j];
+    // Viscous stress and heat flux; the stress tau is counted over mu.
+    V mu{}, conductivity{}, stiff{}, hoop{}, tau_hoop{}, tau[dim][dim] = {}, flux[dim][size] = {};
+    if (viscous) {
+      mu = alpha * gas.mu(T), conductivity = mu * (gas.cp() / gas.prandtl), stiff = alpha * gas.mu_slope(T);
+      if (cell.axisymmetric) hoop = u[1] / point.radius;
+      V divergence = hoop;
+      for (int i = 0; i < dim; ++i) divergence += gu[i][i];
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+          tau[i][j] = gu[i][j] + gu[j][i];
+          if (i == j) tau[i][j] -= 2.0 / 3 * divergence;
+        }
+      tau_hoop = 2.0 * hoop - 2.0 / 3 * divergence;
+      for (int j = 0; j < dim; ++j) {
+        for (int i = 0; i < dim; ++i) {
+          flux[j][1 + i] = mu * tau[i][j];
+          flux[j][dim + 1] += mu * u[i] * tau[i][j];
+        }
+        flux[j][dim + 1] += conductivity * gT[j];
       }
-      V[j][dim + 1] += conductivity * gT[j];
     }
     for (int a = 0; a < nodes; ++a) {
-      double* r = residual + a * size;
+      V* r = residual + a * size;
       for (int k = 0; k < size; ++k) {
-        double sum = M[a] * rate[k];
-        for (int i = 0; i < dim; ++i) sum += point.g[a][i] * (V[i][k] - F[i][k] + capturing * gU[i][k]);
+        V sum = M[a] * rate[k];
+        for (int i = 0; i < dim; ++i) sum += point.g[a][i] * (flux[i][k] - F[i][k] + capturing * gU[i][k]);
         for (int i = 0; i < dim; ++i)
           for (int l = 0; l < size; ++l) sum += point.g[a][i] * P(i, k, l) * R[l];
         r[k] += w * sum;
@@ -189,7 +191,7 @@ void gas_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& table,
     if (!matrix) continue;
     for (int a = 0; a < nodes; ++a)
       for (int b = 0; b < nodes; ++b) {
-        double gradients = 0;
+        V gradients{};
         for (int i = 0; i < dim; ++i) gradients += point.g[a][i] * point.g[b][i];
         mass[a][b] += w * M[a] * M[b];
         spread[a][b] += w * capturing * gradients;
@@ -199,42 +201,42 @@ void gas_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& table,
           for (int j = 0; j < dim; ++j) testF[a][b][i][j] += w * point.g[a][i] * point.g[b][j];
           if (cell.axisymmetric) testR[a][b][i] += w * point.g[a][i] * M[b] / point.radius;
           // What the carried test function sees of -p grad alpha + ... in the momentum and energy rows.
-          for (int l = 0; l < size; ++l) {
-            double sum = P(i, l, dim + 1) * alpha_rate;
+          for (int l = 0; cell.porous && l < size; ++l) {
+            V sum = P(i, l, dim + 1) * alpha_rate;
             for (int j = 0; j < dim; ++j) sum -= P(i, l, 1 + j) * slope[j];
             K(a, l, b, 0) += w * point.g[a][i] * M[b] * sum;
           }
         }
-        for (int i = 0; i < dim; ++i) K(a, 1 + i, b, 0) -= w * M[a] * M[b] * slope[i];
-        K(a, dim + 1, b, 0) += w * M[a] * M[b] * alpha_rate;
+        for (int i = 0; cell.porous && i < dim; ++i) K(a, 1 + i, b, 0) -= w * M[a] * M[b] * slope[i];
+        if (cell.porous) K(a, dim + 1, b, 0) += w * M[a] * M[b] * alpha_rate;
         if (cell.axisymmetric) K(a, 2, b, 0) -= w * M[a] * M[b] * alpha / point.radius;
-        // Viscous terms.
-        const double* ga = point.g[a];
-        const double* gb = point.g[b];
-        double along = 0;
-        for (int i = 0; i < dim; ++i) along += ga[i] * gb[i];
+        if (!viscous) continue;
+        const V* ga = point.g[a];
+        const V* gb = point.g[b];
+        const V along = gradients;
         for (int j = 0; j < dim; ++j) {  // derivative with respect to u_j of node b
-          const double hoop_b = cell.axisymmetric && j == 1 ? M[b] / point.radius : 0;
-          const double div_b = gb[j] + hoop_b;
-          double work = 0;
+          V hoop_b{};
+          if (cell.axisymmetric && j == 1) hoop_b = M[b] / point.radius;
+          const V div_b = gb[j] + hoop_b;
+          V work{};
           for (int i = 0; i < dim; ++i) {
             // sum_k ga_k d tau_ik
-            double d = ga[j] * gb[i] - 2.0 / 3 * ga[i] * div_b;
+            V d = ga[j] * gb[i] - 2.0 / 3 * ga[i] * div_b;
             if (i == j) d += along;
             K(a, 1 + i, b, 1 + j) += w * mu * d;
             work += u[i] * d;
           }
-          double carry = 0;
+          V carry{};
           for (int k = 0; k < dim; ++k) carry += ga[k] * tau[j][k];
           K(a, dim + 1, b, 1 + j) += w * mu * (work + M[b] * carry);
-          if (cell.axisymmetric) K(a, 2, b, 1 + j) += w * M[a] * mu * (2 * hoop_b - 2.0 / 3 * div_b) / point.radius;
+          if (cell.axisymmetric) K(a, 2, b, 1 + j) += w * M[a] * mu * (2.0 * hoop_b - 2.0 / 3 * div_b) / point.radius;
         }
         for (int i = 0; i < dim; ++i) {
-          double stress = 0;
+          V stress{};
           for (int k = 0; k < dim; ++k) stress += ga[k] * tau[i][k];
           K(a, 1 + i, b, dim + 1) += w * stiff * M[b] * stress;
           K(a, dim + 1, b, dim + 1) += w * stiff * M[b] * u[i] * stress;
-          K(a, dim + 1, b, dim + 1) += w * stiff * gas.cp() / gas.prandtl * M[b] * ga[i] * gT[i];
+          K(a, dim + 1, b, dim + 1) += w * stiff * (gas.cp() / gas.prandtl * M[b]) * ga[i] * gT[i];
         }
         K(a, dim + 1, b, dim + 1) += w * conductivity * along;
         if (cell.axisymmetric) K(a, 2, b, dim + 1) += w * M[a] * stiff * M[b] * tau_hoop / point.radius;
@@ -242,7 +244,7 @@ void gas_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& table,
   }
   if (!matrix) return;
   for (int b = 0; b < nodes; ++b) {
-    double A0[size][size], A[dim][size][size], B[size][size];  // slopes of U, F and the rate
+    V A0[size][size], A[dim][size][size], B[size][size];  // slopes of U, F and the rate
     conserved_slope(gas, cell.state[b], A0);
     for (int i = 0; i < dim; ++i) flux_slope(gas, cell.state[b], i, A[i]);
     for (int k = 0; k < size; ++k)
@@ -258,14 +260,14 @@ void gas_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& table,
       }
     }
     for (int a = 0; a < nodes; ++a) {
-      double X[dim][size][size];
+      V X[dim][size][size];
       for (int i = 0; i < dim; ++i)
         for (int k = 0; k < size; ++k)
           for (int l = 0; l < size; ++l) {
-            double sum = testU[a][b][i] * B[k][l];
+            V sum = testU[a][b][i] * B[k][l];
             for (int j = 0; j < dim; ++j) sum += testF[a][b][i][j] * A[j][k][l];
             if (cell.axisymmetric) {
-              double radial = A[1][k][l];
+              V radial = A[1][k][l];
               if (k == 2 && l == 0) radial -= cell.alpha[b];
               sum += testR[a][b][i] * radial;
             }
@@ -273,7 +275,7 @@ void gas_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& table,
           }
       for (int k = 0; k < size; ++k)
         for (int l = 0; l < size; ++l) {
-          double sum = mass[a][b] * B[k][l] + spread[a][b] * A0[k][l];
+          V sum = mass[a][b] * B[k][l] + spread[a][b] * A0[k][l];
           for (int i = 0; i < dim; ++i) {
             sum += ofF[a][b][i] * A[i][k][l];
             for (int m = 0; m < size; ++m) sum += P(i, k, m) * X[i][m][l];

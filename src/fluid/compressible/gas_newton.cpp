@@ -40,7 +40,7 @@ GasNewton::GasNewton(const GasSystem& system) : system_(system), matrix_(system.
   SILT_PETSC(KSPSetPCSide(ksp, PC_RIGHT));
   SILT_PETSC(KSPGMRESSetRestart(ksp, 60));
   SILT_PETSC(KSPSetTolerances(ksp, 1e-3, 1e-50, PETSC_DEFAULT, 300));
-  SILT_PETSC(PCSetType(pc, PCASM));
+  SILT_PETSC(PCSetType(pc, mpi_size() > 1 ? PCASM : PCBJACOBI));  // alone ASM would only copy the matrix
   default_option("-fluid_sub_pc_type", "ilu");
   default_option("-fluid_sub_pc_factor_levels", "1");
   SILT_PETSC(SNESSetFromOptions(snes_));

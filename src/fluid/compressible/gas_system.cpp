@@ -14,7 +14,8 @@ GasSystem::GasSystem(const Mesh& mesh, const BoundaryConditions& boundary, const
       constraints_(space_, boundary),
       fixed_temperature_(thermal.fixed()),
       temperature_boundary_(thermal.fixed_boundary()),
-      dimension_(mesh.dimension) {
+      dimension_(mesh.dimension),
+      loop_(gas_loop(mesh.cell)) {
   for (const FacetRule& facet : boundary.facets())
     if (thermal[facet.boundary].kind == TemperatureBoundaries::Condition::flux ||
         thermal[facet.boundary].kind == TemperatureBoundaries::Condition::heat_transfer)
@@ -248,10 +249,9 @@ PetscErrorCode GasSystem::jacobian(const GasStep& step, Vec x, Mat matrix) const
     std::vector<double> block(static_cast<size_t>(m) * m, 0.0);
     const double* s = &state[static_cast<size_t>(i) * m];
     for (int k = 0; k < dimension_; ++k) {
-      const double force = step.force[static_cast<size_t>(i) * m + 1 + k] -
-                           step.response[i] * (s[1 + k] - step.old_velocity[3 * static_cast<size_t>(i) + k]);
       block[(1 + k) * m + 1 + k] += step.response[i];
-      block[(m - 1) * m + 1 + k] += step.response[i] * s[1 + k] - force;
+      block[(m - 1) * m + 1 + k] +=
+          step.response[i] * (2 * s[1 + k] - step.old_velocity[3 * static_cast<size_t>(i) + k]);
     }
     block[m * m - 1] += step.heat_coefficient[i];
     constrain(step, 1, &i, block.data());
@@ -265,17 +265,17 @@ PetscErrorCode GasSystem::jacobian(const GasStep& step, Vec x, Mat matrix) const
   PetscFunctionReturn(0);
 }
 
-/// What acts at the nodes: particles (their force does work) and the heat of walls. Owned nodes only.
+/// What acts at the nodes: particles (the energy of their load is in its last place; the response takes its work at the
+/// new velocity) and the heat of walls. Owned nodes only.
 void GasSystem::nodes(const GasStep& step, const std::vector<double>& state, double* residual) const {
   const int m = size();
   for (int i = 0; i < mesh_.owned_nodes; ++i) {
     const double* s = &state[static_cast<size_t>(i) * m];
     double* r = residual + static_cast<size_t>(i) * m;
     for (int k = 0; k < dimension_; ++k) {
-      const double force = step.force[static_cast<size_t>(i) * m + 1 + k] -
-                           step.response[i] * (s[1 + k] - step.old_velocity[3 * static_cast<size_t>(i) + k]);
-      r[1 + k] -= force;
-      r[m - 1] -= force * s[1 + k];
+      const double more = step.response[i] * (s[1 + k] - step.old_velocity[3 * static_cast<size_t>(i) + k]);
+      r[1 + k] += more - step.force[static_cast<size_t>(i) * m + 1 + k];
+      r[m - 1] += more * s[1 + k];
     }
     r[m - 1] -= step.force[static_cast<size_t>(i) * m + m - 1] + step.heat[i] - step.heat_coefficient[i] * s[m - 1];
   }

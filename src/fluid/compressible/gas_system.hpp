@@ -3,6 +3,7 @@
 
 #include "fluid/boundary/temperature_boundaries.hpp"
 #include "fluid/compressible/gas_frozen.hpp"
+#include "fluid/compressible/gas_loop.hpp"
 #include "fluid/compressible/open_boundary.hpp"
 #include "fluid/space/lagrange_space.hpp"
 #include "fluid/space/velocity_constraints.hpp"
@@ -71,7 +72,6 @@ class GasSystem {
   void gather(const GasStep& step, const std::vector<double>& state, int cell, GasCell<C>& out) const;
   template <Cell C>
   void freeze_cells(GasStep& step, const std::vector<double>& state, const std::vector<double>& rate_now) const;
-  template <Cell C>
   PetscErrorCode cells(const GasStep& step, const std::vector<double>& state, double* residual, Mat matrix) const;
   template <int dim>
   PetscErrorCode facets(const GasStep& step, const std::vector<double>& state, double* residual, Mat matrix) const;
@@ -90,6 +90,7 @@ class GasSystem {
   std::vector<int> temperature_boundary_;  ///< [nodes] where heat is given: temperature, flux or transfer; -1: nowhere
   std::vector<double> areas_;
   int dimension_;
+  GasLoop loop_;
   bool axisymmetric_ = false;
   std::vector<PetscInt> global_;  ///< [nodes] block
   std::vector<double> weights_;   ///< [nodes] m3, int N_i (r)

@@ -1,0 +1,122 @@
+// A gas that solves for its total energy, with particles in it.
+#include <catch2/catch.hpp>
+#include <numbers>
+#include <random>
+
+#include "coupled_case.hpp"
+#include "fluid/compressible/compressible.hpp"
+
+using namespace silt;
+using test::CoupledCase;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr int dust = 64;
+constexpr double diameter = 1e-3, dust_density = 300, dust_heat = 900, gas_constant = 287.05, heat_ratio = 1.4;
+
+/// Solves the gas's steps to round-off while it lives.
+struct Tight {
+  Tight() {
+    SILT_PETSC(PetscOptionsSetValue(nullptr, "-fluid_snes_rtol", "1e-13"));
+    SILT_PETSC(PetscOptionsSetValue(nullptr, "-fluid_ksp_rtol", "1e-6"));
+  }
+  ~Tight() {
+    (void)PetscOptionsClearValue(nullptr, "-fluid_snes_rtol");
+    (void)PetscOptionsClearValue(nullptr, "-fluid_ksp_rtol");
+  }
+};
+
+void dusty_gas(CoupledCase& run, double viscosity) {
+  run.set("mesh_upper", "0.02, 0.02, 0.02").set("mesh_cells", "4, 4, 4").set("mesh_periodic", "1, 1, 1");
+  run.set("fluid_type", "compressible").set("fluid_order", "1");
+  run.set("fluid_viscosity", std::to_string(viscosity)).set("fluid_initial_pressure", "1e5");
+  run.set("fluid_initial_temperature", "300").set("fluid_initial_velocity", "30 + cos(314.159265358979*y), 0, 0");
+  run.set("fluid_viscosity_law", "sutherland").set("fluid_viscosity_temperature", "300");
+  run.set("material_dust_density", std::to_string(dust_density)).set("material_dust_young_modulus", "1e4");
+  run.set("material_dust_heat_capacity", std::to_string(dust_heat));
+  run.set("heat_particles", "yes").set("heat_initial_temperature", "400").set("drag_type", "schiller_naumann");
+  run.set("particles_step", "1e-5").set("particles_step_override", "yes");
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> noise(-1, 1);
+  std::vector<Seed> seeds;
+  for (int k = 0; k < dust; ++k) {
+    Seed seed;
+    seed.position = 5e-3 * Vec3(k % 4 + 0.5, k / 4 % 4 + 0.5, k / 16 + 0.5) + 1e-3 * Vec3(noise(random), 0.5, 0.3);
+    seed.velocity = Vec3(0.3 * noise(random), 0, 0.3 * noise(random));
+    seed.spin = Vec3(0, 0, 20);
+    seed.radius = diameter / 2;
+    seeds.push_back(seed);
+  }
+  run.create(seeds);
+}
+
+double gas_energy(const CoupledCase& run) {
+  const Compressible& gas = dynamic_cast<const Compressible&>(*run.fluid);
+  const auto rho = gas.properties().density, u = gas.velocity(), p = gas.pressure(),
+             alpha = std::span<const double>(gas.load().void_fraction);
+  double sum = 0;
+  for (int i = 0; i < run.mesh->owned_nodes; ++i)
+    sum += run.coupling->mass()[i] * alpha[i] *
+           (p[i] / (heat_ratio - 1) + 0.5 * rho[i] * vec3(&u[3 * static_cast<size_t>(i)]).squaredNorm());
+  return mpi_sum(sum);
+}
+
+double gas_momentum(const CoupledCase& run) {
+  const auto rho = run.fluid->properties().density, u = run.fluid->velocity();
+  double sum = 0;
+  for (int i = 0; i < run.mesh->owned_nodes; ++i)
+    sum += run.coupling->mass()[i] * run.fluid->load().void_fraction[i] * rho[i] * u[3 * static_cast<size_t>(i)];
+  return mpi_sum(sum);
+}
+
+double particle_heat(CoupledCase& run) {
+  const int column = run.particles->columns().find("temperature");
+  double sum = 0;
+  for (int p = 0; p < run.particles->owned(); ++p)
+    sum += run.particles->heat_capacity(p) * *run.particles->columns().row(column, p);
+  return mpi_sum(sum);
+}
+
+double total_energy(CoupledCase& run) {
+  return gas_energy(run) + particle_heat(run) + run.particles->kinetic_energy() + run.particles->rotational_energy() -
+         (run.coupling->work_ledger() ? run.coupling->work_ledger()->in_transit : 0);
+}
+
+}  // namespace
+
+TEST_CASE("Dust and gas in a closed box come to one velocity and one temperature, and their total energy is kept",
+          "[coupling][compressible][mpi]") {
+  const Tight tight;
+  CoupledCase run;
+  run.set("viscous_torque_type", "stokes");
+  dusty_gas(run, 0.05);
+  const double solid = dust * pi / 6 * std::pow(diameter, 3);
+  const double gas_mass = 1e5 / (gas_constant * 300) * (8e-6 - solid), dust_mass = dust_density * solid;
+  const double before = total_energy(run), momentum = run.particles->momentum().x() + gas_mass * 30;
+  const double start = gas_momentum(run) + run.particles->momentum().x();
+  double largest = 0;
+  for (int n = 0; n < 50; ++n) {
+    run.step(n < 20 ? 1e-4 : 1e-3);
+    largest = std::max(largest, std::abs(total_energy(run) / before - 1));
+    CHECK(run.coupling->work_ledger()->residual < 1e-12);
+    CHECK(run.coupling->heat_ledger()->residual < 1e-12);
+    CHECK(run.coupling->ledger().residual < 1e-12);
+  }
+  CHECK(largest < 1e-10);
+  CHECK(gas_momentum(run) + run.particles->momentum().x() + run.coupling->ledger().in_transit.x() ==
+        Approx(start).epsilon(1e-9));
+  const double velocity = momentum / (gas_mass + dust_mass);
+  const double kinetic = 0.5 * (gas_mass + dust_mass) * velocity * velocity;
+  const double temperature = (before - kinetic) / (gas_mass * gas_constant / (heat_ratio - 1) + dust_mass * dust_heat);
+  const auto T = run.fluid->temperature(), u = run.fluid->velocity();
+  const int column = run.particles->columns().find("temperature");
+  for (int i = 0; i < run.mesh->owned_nodes; ++i) {
+    CHECK(T[i] == Approx(temperature).epsilon(1e-6));
+    CHECK(u[3 * static_cast<size_t>(i)] == Approx(velocity).epsilon(5e-5));
+  }
+  for (int p = 0; p < run.particles->owned(); ++p) {
+    CHECK(run.particles->velocity(p).x() == Approx(velocity).epsilon(5e-5));
+    CHECK(*run.particles->columns().row(column, p) == Approx(temperature).epsilon(1e-6));
+  }
+}
