@@ -64,17 +64,15 @@ void Budget::start(const OutputDirectory& directory, const Fluid* fluid, Particl
 }
 
 /// J, what the particles gave a gas in the step.
-double Budget::energy_from(const Coupling* coupling) {
+double Budget::energy_from(const ExchangeAccounts& exchanged) {
   double sum = 0;
-  if (const WorkLedger* work = coupling ? coupling->work_ledger() : nullptr)
-    sum += work->given - work->response + work->displaced + work->inserted;
-  if (const HeatLedger* heat = coupling ? coupling->heat_ledger() : nullptr)
-    sum += heat->given + heat->response_on_fluid;
+  if (const WorkLedger* work = exchanged.work) sum += work->given - work->response + work->displaced + work->inserted;
+  if (const HeatLedger* heat = exchanged.heat) sum += heat->given + heat->response_on_fluid;
   return sum;
 }
 
-double Budget::close(const Moment& moment, Particles* particles, const Coupling* coupling) {
-  const ExchangeLedger* exchange = coupling ? &coupling->ledger() : nullptr;
+double Budget::close(const Moment& moment, Particles* particles, const ExchangeAccounts& exchanged) {
+  const ExchangeLedger* exchange = exchanged.momentum;
   const double exchange_residual = exchange ? exchange->residual : 0;
   double particle_residual = 0, taken_residual = 0;
   Particles::Impulses in;
@@ -117,8 +115,8 @@ double Budget::close(const Moment& moment, Particles* particles, const Coupling*
     add(row, unaccounted);
     if (with_energy_) {
       const double energy = moment.fluid_step.heat, supply = moment.dt * moment.fluid_step.energy_supply;
-      const double from = energy_from(coupling), left = fluid_known_ ? energy - fluid_energy_ - supply - from : 0;
-      row.insert(row.end(), {energy, supply, from, left, coupling ? coupling->work_ledger()->in_transit : 0,
+      const double from = energy_from(exchanged), left = fluid_known_ ? energy - fluid_energy_ - supply - from : 0;
+      row.insert(row.end(), {energy, supply, from, left, exchanged.work ? exchanged.work->in_transit : 0,
                              particles ? particles->kinetic_energy() + particles->rotational_energy() : 0});
       fluid_energy_ = energy;
     }

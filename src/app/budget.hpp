@@ -40,11 +40,11 @@ class Budget {
   /// Opens the file and takes the starting momenta. Collective.
   void start(const OutputDirectory& directory, const Fluid* fluid, Particles* particles);
   /// Closes the account of the step that led to `moment`: writes a row and returns the largest of the gated residuals.
-  /// `coupling` is null without one. Throws RunError on every rank when out of balance. Collective.
-  double close(const Moment& moment, Particles* particles, const Coupling* coupling);
+  /// Throws RunError on every rank when out of balance. Collective.
+  double close(const Moment& moment, Particles* particles, const ExchangeAccounts& exchanged);
 
  private:
-  static double energy_from(const Coupling* coupling);
+  static double energy_from(const ExchangeAccounts& exchanged);
 
   LedgerOptions options_;
   bool with_fluid_, with_particles_, with_energy_ = false;

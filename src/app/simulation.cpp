@@ -326,7 +326,9 @@ void Simulation::attempt() {
 
 void Simulation::report() {
   const Stopwatch watch(*this, writing);
-  if (now_.step > 0) now_.ledger_residual = budget_->close(now_, particles_.get(), coupling_.get());
+  if (now_.step > 0)
+    now_.ledger_residual =
+        budget_->close(now_, particles_.get(), coupling_ ? coupling_->accounts() : ExchangeAccounts{});
   Quantities quantities;
   diagnostics_->sample(now_, quantities);
   probes_->sample(now_, quantities);

@@ -46,6 +46,13 @@ struct CouplingOptions {
   }
 };
 
+/// What a step exchanged: null where there is no coupling, heat or total energy.
+struct ExchangeAccounts {
+  const ExchangeLedger* momentum = nullptr;
+  const HeatLedger* heat = nullptr;
+  const WorkLedger* work = nullptr;
+};
+
 /// The exchange of volume and momentum between fluid and particles over one fluid step:
 ///
 ///     coupling.before_particles(dt);  particles.advance(t, dt);
@@ -91,6 +98,8 @@ class Coupling {
   const HeatLedger* heat_ledger() const { return heat_ ? &heat_->ledger() : nullptr; }
   /// The same of work; null when the fluid does not solve for its total energy.
   const WorkLedger* work_ledger() const { return work_ ? &work_->ledger() : nullptr; }
+  /// All of them, as the budget takes them.
+  ExchangeAccounts accounts() const { return {&ledger(), heat_ledger(), work_ledger()}; }
   /// One line for the header of the run: filter, drag law.
   std::string description() const;
   const Filter& filter() const { return *filter_; }

@@ -157,12 +157,12 @@ TEST_CASE("the ledger stops a run whose exchange is out of balance, on every ran
   budget.start(directory, &fluid, nullptr);
   ExchangeLedger exchange;
   exchange.residual = 1e-13;
-  CHECK(budget.close(moment_of(fluid, 0.1), nullptr, &exchange) == 1e-13);
+  CHECK(budget.close(moment_of(fluid, 0.1), nullptr, {&exchange}) == 1e-13);
   exchange.residual = 2e-10;
-  CHECK_THROWS_WITH(budget.close(moment_of(fluid, 0.2), nullptr, &exchange),
+  CHECK_THROWS_WITH(budget.close(moment_of(fluid, 0.2), nullptr, {&exchange}),
                     Catch::Contains("out of balance at t = 0.2"));
   exchange.residual = std::nan("");
-  CHECK_THROWS_AS(budget.close(moment_of(fluid, 0.3), nullptr, &exchange), RunError);
+  CHECK_THROWS_AS(budget.close(moment_of(fluid, 0.3), nullptr, {&exchange}), RunError);
   MPI_Barrier(PETSC_COMM_WORLD);
   std::ifstream in(directory.path("ledger.csv"));
   int lines = 0;

@@ -114,14 +114,11 @@ TEST_CASE("Particles with inertia take up the turbulence as their response time 
 }
 
 TEST_CASE("Dispersion without turbulence is refused, and so is half of it", "[dispersion]") {
-  CoupledCase none;
-  none.set("mesh_cells", "2, 2, 2")
-      .set("fluid_type", "prescribed")
-      .set("fluid_density", "1")
-      .set("fluid_viscosity", "1e-5");
-  none.set("material_bead_density", "1000").set("dispersion_type", "random_walk");
-  CHECK_THROWS_AS(none.create({}), UserError);
-  CoupledCase half = none;
-  half.set("fluid_turbulent_energy", "1");
-  CHECK_THROWS_AS(half.create({}), UserError);
+  for (const bool half : {false, true}) {
+    CoupledCase run;
+    run.set("mesh_cells", "2, 2, 2").set("fluid_type", "prescribed").set("fluid_density", "1");
+    run.set("fluid_viscosity", "1e-5").set("material_bead_density", "1000").set("dispersion_type", "random_walk");
+    if (half) run.set("fluid_turbulent_energy", "1");
+    CHECK_THROWS_AS(run.create({}), UserError);
+  }
 }

@@ -79,7 +79,7 @@ TEST_CASE("Walton-Braun friction is of second order in the step, through reversa
     contact.normal[2] = 1;
     contact.effective_mass = mass;
     const NormalLoad<double> normal{2e-4, 0, 1e-5, stiffness, 0};
-    const WaltonBraunTangential::Constants<double> constants{1, 0.5};
+    const WaltonBraunTangential::Constants<double> constants{1, 0.5, 0.5};
     WaltonBraunTangential::History<double> history{};
     const double step = 20 / frequency / steps;
     double velocity = 5e-5 / stiffness * frequency, acceleration = 0, force[3];

@@ -25,10 +25,10 @@ struct WaltonBraunTangential {
   template <class Real>
   struct Constants {
     Real ratio;  ///< -, k_t0/k_n
-    Real friction;
+    Real friction, least_share;
   };
   Constants<double> constants(const PairProperties& pair) const {
-    return {(1 - pair.poisson_ratio) / (1 - pair.poisson_ratio / 2), pair.friction};
+    return {(1 - pair.poisson_ratio) / (1 - pair.poisson_ratio / 2), pair.friction, pair.least_share};
   }
 
   template <class Real>
@@ -47,7 +47,7 @@ struct WaltonBraunTangential {
     const Real limit = c.friction * magnitude(normal.force), stiffness = c.ratio * normal.stiffness;
     turn_into_plane(history.force, contact.normal);
     const Real present = sqrt(dot(history.force, history.force));
-    const Real read = dt * share_of_step(stiffness, contact.effective_mass, dt);
+    const Real read = dt * share_of_step(c.least_share, stiffness, contact.effective_mass, dt);
     const Real out_of_plane = dot(history.owed, contact.normal);
     Real direction[3], step[3];
     for (int d = 0; d < 3; ++d) {
