@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# labels: fast
+"""A jet that starts all at once, with a step far too large: the march towards the steady state gets over it with pressure and
+temperature above zero; the march in time, which may not smear the start, stops with the reason and leaves the last good
+state as a readable checkpoint."""
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+
+CASE = """\
+mesh: {type: box, cell: quadrilateral, lower: [0, 0, 0], upper: [0.007, 0.0035, 0], cells: [28, 14]}
+time: {end: 3.0e-5, step: 3.0e-5, least_step: 1.0e-9}
+fluid:
+  type: compressible
+  symmetry: axisymmetric
+  order: 1
+  viscosity: 1.0e-4
+  initial_pressure: "1e5"
+  initial_temperature: "300"
+boundary:
+  x_min:
+    type: far_field
+    pressure: "y < 0.0005 ? 15.8485e5 : 1e5"
+    velocity: "y < 0.0005 ? 316.97 : 0, 0, 0"
+    temperature: {value: "y < 0.0005 ? 250 : 300"}
+  x_max: {type: far_field, pressure: "1e5", temperature: {value: "300"}}
+  y_max: {type: far_field, pressure: "1e5", temperature: {value: "300"}}
+  y_min: {type: slip}
+probe: {jet: {point: [0.001, 0, 0]}}
+output: {directory: out, interval: 3.0e-5}
+progress: {quiet: yes}
+"""
+
+
+def run(silt, folder, *options):
+    done = subprocess.run([silt, "case.yaml", *options], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, timeout=300)
+    return done.returncode, done.stdout
+
+
+def main():
+    silt = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "case.yaml"), "w") as file:
+            file.write(CASE)
+        code, text = run(silt, folder, "-fluid_march", "steady")
+        assert code == 0, text
+        with open(os.path.join(folder, "out", "probe_jet.csv")) as file:
+            rows = list(csv.DictReader(file))
+        assert float(rows[-1]["time"]) > 2.999e-5 and all(float(r["pressure"]) > 0 and float(r["temperature"]) > 0 for r in rows), rows[-1]
+        assert float(rows[-1]["mach"]) > 1.5, rows[-1]
+
+        code, text = run(silt, folder)
+        assert code == 1 and "failed down to" in text and "(-time_least_step)" in text and "last_good.h5" in text, (code, text)
+        good = os.path.join(folder, "out", "last_good.h5")
+        assert os.path.exists(good), text
+        code, text = run(silt, folder, "-restart", good, "-check")
+        assert code == 0, text
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
