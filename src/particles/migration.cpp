@@ -1,5 +1,6 @@
 #include "particles/migration.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/error.hpp"
@@ -22,6 +23,11 @@ namespace {
 void wrap(const Locator& locator, const Place& place, Motion& motion) {
   for (int d = 0; d < 3; ++d)
     if (place.wrap[d] != 0) motion.position[d] += place.wrap[d] * locator.period()[d];
+}
+
+/// Fills `values`, which may be empty, from bytes.
+void take(const char* bytes, std::vector<double>& values) {
+  std::copy_n(bytes, values.size() * sizeof(double), reinterpret_cast<char*>(values.data()));
 }
 
 template <class T>
@@ -142,7 +148,7 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
         store.cell.push_back(place.cell);
         store.action.push_back(packet.action);
         std::vector<double> rows((bytes - sizeof packet) / sizeof(double));
-        std::memcpy(rows.data(), incoming.data() + at + sizeof packet, bytes - sizeof packet);
+        take(incoming.data() + at + sizeof packet, rows);
         store.columns.scatter(p, rows.data());
         contacts.append(rows.data() + row.size(), packet.contact_rows);
         walls.append(rows.data() + row.size() + static_cast<std::size_t>(packet.contact_rows) * contacts.width,
@@ -168,7 +174,7 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
     if (places[k].state == Place::State::boundary) {
       const Packet packet = lost_sight[k].packet();
       const Place& first = lost_sight[k].place;
-      std::memcpy(row.data(), lost_sight[k].bytes.data() + sizeof packet, row.size() * sizeof(double));
+      take(lost_sight[k].bytes.data() + sizeof packet, row);
       const int boundary = first.state == Place::State::boundary ? first.boundary : places[k].boundary;
       gone.push_back({packet.id, packet.motion, packet.carried, packet.action, packet.cell, boundary, row});
     } else {
