@@ -121,6 +121,7 @@ IsHandle FlowSystem::velocity_rows() const {
 
 IsHandle FlowSystem::pressure_rows() const {
   std::vector<PetscInt> rows;
+  rows.reserve(mesh_.owned_nodes);
   for (int i = 0; i < mesh_.owned_nodes; ++i) rows.push_back(global_[pressure_place(i)]);
   IsHandle is;
   SILT_PETSC(

@@ -53,6 +53,7 @@ void LagrangeSpace::add_middles() {
         continue;
       }
       std::vector<int> key;
+      key.reserve(local.size());
       for (int p : local) key.push_back(v[p]);
       std::sort(key.begin(), key.end());
       const auto [entry, fresh] = known.try_emplace(key, nodes);
@@ -111,6 +112,7 @@ void LagrangeSpace::number_globally() {
 
   // The owner's number is the least one that is offered: the others offer none.
   std::vector<long long> offered;
+  offered.reserve(shared.size());
   for (int i : shared) offered.push_back(owned[i] ? node_global[i] : std::numeric_limits<long long>::max());
   const std::vector<long long> numbers = least_over_ranks(keys, offered);
   for (size_t k = 0; k < shared.size(); ++k) node_global[shared[k]] = static_cast<PetscInt>(numbers[k]);

@@ -18,6 +18,7 @@ Parents simplex_parents(int vertices) {
 /// Lattice places (0, 1, 2 in each direction) of the nodes of a tensor element: vertices first.
 std::vector<std::array<int, 3>> tensor_places(int dimension) {
   std::vector<std::array<int, 3>> result;
+  result.reserve(dimension > 2 ? 27 : 9);
   for (int a = 0; a < 1 << dimension; ++a) result.push_back({2 * (a & 1), 2 * (a >> 1 & 1), 2 * (a >> 2)});
   for (int k = 0; k < (dimension > 2 ? 3 : 1); ++k)
     for (int j = 0; j < 3; ++j)
