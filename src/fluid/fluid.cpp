@@ -45,7 +45,6 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
                                 options.origin("fluid_element"), *options.find("fluid_element")));
   if (fluid.type == "prescribed") Turbulence::refuse(mesh, options, "with -fluid_type prescribed");
   if (compressible) Turbulence::refuse(mesh, options, "with -fluid_type compressible");
-  if (!compressible && fluid.scheme == "monolithic") Turbulence::refuse(mesh, options, "with -fluid_scheme monolithic");
   if (compressible) {
     if (options.given("fluid_scheme") && fluid.scheme != "monolithic")
       throw UserError("-fluid_scheme pressure_correction is not available with -fluid_type compressible");

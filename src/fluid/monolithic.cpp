@@ -40,6 +40,7 @@ Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& f
       solver_(system_),
       energy_(EnergyEquation::create(mesh, options, fluid.energy, fluid.density, gravity, boundary_,
                                      system_.space().order)),
+      turbulence_(Turbulence::create(mesh, options, boundary_)),
       order_(fluid.order),
       gravity_(gravity) {
   density_ = fluid.density;
@@ -82,6 +83,10 @@ Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& f
   prepare_step(0, 0);
   system_.constraints().impose(fields_.prescribed_velocity.data(), velocity_.data());
   velocity_previous_ = velocity_;
+  if (turbulence_) {
+    density_field_.assign(mesh.nodes, density_), viscosity_field_.assign(mesh.nodes, viscosity_);
+    turbulence_->start(turbulent_flow());
+  }
   system_.to_vector(velocity_.data(), pressure_.data(), unknown_);
   find_pressure_gradient();
 }
@@ -103,6 +108,7 @@ void Monolithic::prepare_step(double time, double dt) {
     f.response[i] = load_.response[i] * inverse;
     for (int c = 0; c < 3; ++c) f.load[3 * i + c] = load_.force[3 * i + c] * inverse;
   }
+  if (turbulence_) f.eddy_viscosity = turbulence_->cell_eddy_viscosity();
   f.body.assign(3 * v, 0.0);
   if (body_force_)
     for (size_t i = 0; i < v; ++i) vec3(&f.body[3 * i]) = body_force_(vec3(&space.node_coordinates[3 * i]), time + dt);
@@ -182,27 +188,34 @@ FluidStep Monolithic::advance(double time, double dt) {
   system_.constraints().impose(fields_.prescribed_velocity.data(), guess.data());
   system_.to_vector(guess.data(), pressure_.data(), unknown_);
   NewtonSolver::Result result;
-  int energy_iterations = 0;
+  int energy_iterations = 0, turbulence_iterations = 0;
   try {
     result = solver_.solve(fields_, unknown_, residual_scale_);
-    if (energy_)
+    if (energy_) {
+      std::vector<double> eddy;
+      if (turbulence_) eddy = turbulence_->cell_eddy_conductivity(heat_capacity_, conductivity_, viscosity_);
       energy_iterations = energy_->solve(time, bdf_, dt, load_, system_.superficial_velocity(fields_, unknown_),
-                                         system_.nodal_outflow(fields_, unknown_));
+                                         system_.nodal_outflow(fields_, unknown_), turbulence_ ? &eddy : nullptr);
+    }
+    system_.from_vector(unknown_, velocity_.data(), pressure_.data());
+    if (turbulence_) turbulence_iterations = turbulence_->solve(time, bdf_, dt, turbulent_flow());
   } catch (const SolveFailure&) {
+    velocity_ = before, pressure_ = pressure_before;
     system_.to_vector(before.data(), pressure_before.data(), unknown_);
     throw;
   }
-  system_.from_vector(unknown_, velocity_.data(), pressure_.data());
   velocity_previous_ = before;
   std::fill(step_previous_.begin(), step_previous_.end(), dt);
   if (boundary_.closed()) remove_mean_pressure();
   find_change(before);
   find_pressure_gradient();
   if (energy_) energy_->accept();
+  if (turbulence_) turbulence_->accept();
   FluidStep step = report(dt);
   if (energy_) step.heat = energy_->heat();
   step.newton_iterations = result.newton;
   step.energy_iterations = energy_iterations;
+  step.turbulence_iterations = turbulence_iterations;
   step.velocity_iterations = step.pressure_iterations = result.linear;
   return step;
 }
@@ -335,54 +348,6 @@ FluidStep Monolithic::report(double dt) const {
   }
   for (int i = 0; i < 3; ++i) step.momentum[i] = mpi_sum(momentum[i]);
   return step;
-}
-
-std::vector<Fluid::StateArray> Monolithic::state() {
-  // A checkpoint sees the vertices as [nodes][3] and the middles by cell.
-  const LagrangeSpace& space = system_.space();
-  const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;
-  std::vector<StateArray> result = {{"pressure", &pressure_, 1},
-                                    {"velocity", &vertices_, 3},
-                                    {"velocity_previous", &vertices_previous_, 3},
-                                    {"velocity_change", &change_, 3},
-                                    {"fluid_step_previous", &step_previous_, 1}};
-  const size_t vertices = 3 * static_cast<size_t>(mesh_.nodes);
-  vertices_.assign(velocity_.begin(), velocity_.begin() + static_cast<long>(vertices));
-  vertices_previous_.assign(velocity_previous_.begin(), velocity_previous_.begin() + static_cast<long>(vertices));
-  if (energy_) energy_->add_state(result);
-  if (system_.equal_order()) return result;
-  const auto gather = [&](const std::vector<double>& from, std::vector<double>& to) {
-    to.resize(3 * static_cast<size_t>(mesh_.cells) * (nv - np));
-    for (int c = 0; c < mesh_.cells; ++c)
-      for (int a = np; a < nv; ++a)
-        std::copy_n(&from[3 * static_cast<size_t>(space.cell_nodes[static_cast<size_t>(c) * nv + a])], 3,
-                    &to[3 * (static_cast<size_t>(c) * (nv - np) + a - np)]);
-  };
-  gather(velocity_, middles_);
-  gather(velocity_previous_, middles_previous_);
-  result.push_back({"velocity_middles", &middles_, 3 * (nv - np), true});
-  result.push_back({"velocity_middles_previous", &middles_previous_, 3 * (nv - np), true});
-  return result;
-}
-
-void Monolithic::restored() {
-  const LagrangeSpace& space = system_.space();
-  const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;
-  std::copy(vertices_.begin(), vertices_.end(), velocity_.begin());
-  std::copy(vertices_previous_.begin(), vertices_previous_.end(), velocity_previous_.begin());
-  if (!system_.equal_order()) {
-    const auto scatter = [&](const std::vector<double>& from, std::vector<double>& to) {
-      to.resize(3 * static_cast<size_t>(space.nodes));
-      for (int c = 0; c < mesh_.cells; ++c)
-        for (int a = np; a < nv; ++a)
-          std::copy_n(&from[3 * (static_cast<size_t>(c) * (nv - np) + a - np)], 3,
-                      &to[3 * static_cast<size_t>(space.cell_nodes[static_cast<size_t>(c) * nv + a])]);
-    };
-    scatter(middles_, velocity_);
-    scatter(middles_previous_, velocity_previous_);
-  }
-  system_.to_vector(velocity_.data(), pressure_.data(), unknown_);
-  find_pressure_gradient();
 }
 
 std::unique_ptr<Fluid> make_monolithic(const Mesh& mesh, Options& options, const FluidOptions& fluid,

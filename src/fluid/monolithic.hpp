@@ -8,6 +8,7 @@
 #include "fluid/fluid.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/newton_solver.hpp"
+#include "fluid/turbulence/turbulence.hpp"
 
 namespace silt {
 
@@ -46,6 +47,8 @@ class Monolithic final : public Fluid {
     return energy_ ? energy_->temperature_change() : std::span<const double>();
   }
   std::vector<BoundaryFlow> boundary_flow() const override;
+  const Turbulence* turbulence() const override { return turbulence_.get(); }
+  std::vector<Scalar> scalars() const override;
   std::vector<StateArray> state() override;
   void restored() override;
 
@@ -70,6 +73,7 @@ class Monolithic final : public Fluid {
   void find_pressure_gradient();
   void remove_mean_pressure();
   FluidStep report(double dt) const;
+  Turbulence::Flow turbulent_flow() const;
 
   const Mesh& mesh_;
   MonolithicOptions options_;
@@ -77,6 +81,8 @@ class Monolithic final : public Fluid {
   FlowSystem system_;
   NewtonSolver solver_;
   std::unique_ptr<EnergyEquation> energy_;
+  std::unique_ptr<Turbulence> turbulence_;
+  std::vector<double> density_field_, viscosity_field_;  ///< [nodes], uniform, for the turbulence
   StepFields fields_;
   Bdf bdf_{};
   int order_;

@@ -17,11 +17,12 @@ struct FlowLayout {
 struct FlowData {
   Cell cell = Cell::hexahedron;
   const FlowTable* table = nullptr;
-  const int* velocity_nodes = nullptr;  ///< [cells][NV]
-  const int* vertices = nullptr;        ///< [cells][NP]
-  const double* coordinates = nullptr;  ///< [cells][NP][3]
-  const double* cell_size = nullptr;    ///< [cells] m, shortest edge
-  const double* state = nullptr;        ///< unknowns by FlowLayout, Cartesian components
+  const int* velocity_nodes = nullptr;     ///< [cells][NV]
+  const int* vertices = nullptr;           ///< [cells][NP]
+  const double* coordinates = nullptr;     ///< [cells][NP][3]
+  const double* cell_size = nullptr;       ///< [cells] m, shortest edge
+  const double* eddy_viscosity = nullptr;  ///< [cells] Pa s, added to the viscosity; null: 0
+  const double* state = nullptr;           ///< unknowns by FlowLayout, Cartesian components
   FlowLayout layout;
   const double* alpha = nullptr;         ///< [v]
   const double* history = nullptr;       ///< [v][3]

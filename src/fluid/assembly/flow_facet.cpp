@@ -100,6 +100,7 @@ void FlowFacets::add_terms(const FlowData& data, int f, const FacetTerm& term, d
   const int* v = data.velocity_nodes + static_cast<size_t>(facet.cell) * nv_;
   const int* n = data.vertices + static_cast<size_t>(facet.cell) * np_;
   const FlowParameters& k = data.parameters;
+  const double viscosity = k.viscosity + (data.eddy_viscosity ? data.eddy_viscosity[facet.cell] : 0);
   for (const Point& point : points_[facet.facet]) {
     const Geometry g = geometry(data, f, point);
     if (!term.pressure_boundary) {
@@ -136,7 +137,7 @@ void FlowFacets::add_terms(const FlowData& data, int f, const FacetTerm& term, d
     if (through.value > 0) through = D(0.0);
     for (int i = 0; i < dim; ++i) {
       D momentum = through * velocity[i] * (-term.backflow * alpha * k.density);
-      for (int j = 0; j < dim; ++j) momentum -= slope[j][i] * (alpha * k.viscosity * g.normal[j]);
+      for (int j = 0; j < dim; ++j) momentum -= slope[j][i] * (alpha * viscosity * g.normal[j]);
       for (int a = 0; a < nv_; ++a) {
         const int row = velocity_row(a, i);
         const double weight = k.model_a ? data.alpha[v[a]] : 1.0;
@@ -174,9 +175,10 @@ FlowFacets::Values FlowFacets::values(const FlowData& data, int f, const Point& 
   }
   for (int b = 0; b < np_; ++b)
     result.pressure += point.M[b] * data.state[data.layout.pressure_offset + data.layout.pressure_stride * n[b]];
+  const double viscosity = data.parameters.viscosity + (data.eddy_viscosity ? data.eddy_viscosity[facet.cell] : 0);
   const double share = data.parameters.model_a ? result.alpha : 1.0;
-  result.traction = share * result.pressure * g.normal -
-                    result.alpha * data.parameters.viscosity * ((gradient + gradient.transpose()) * g.normal);
+  result.traction =
+      share * result.pressure * g.normal - result.alpha * viscosity * ((gradient + gradient.transpose()) * g.normal);
   return result;
 }
 

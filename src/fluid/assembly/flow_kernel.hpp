@@ -26,13 +26,14 @@ template <class E, class V>
 struct FlowBatch {
   static constexpr int dim = E::dim, NP = E::NP, NV = E::NV;
   V x[NP][dim], u[NV][dim], p[NP], alpha[NV], history[NV][dim], old[NV][dim], body[NV][dim];
-  V rate[NP], load[NP][dim], response[NP], h;
+  V rate[NP], load[NP][dim], response[NP], viscosity, h;
 
   void gather(const FlowData& d, int cell, int l) {
     const int* v = d.velocity_nodes + static_cast<long>(cell) * NV;
     const int* n = d.vertices + static_cast<long>(cell) * NP;
     const double* c = d.coordinates + 3L * cell * NP;
     h[l] = d.cell_size[cell];
+    viscosity[l] = d.parameters.viscosity + (d.eddy_viscosity ? d.eddy_viscosity[cell] : 0);
     for (int a = 0; a < NP; ++a) {
       p[a][l] = d.state[d.layout.pressure_offset + static_cast<long>(d.layout.pressure_stride) * n[a]];
       rate[a][l] = d.alpha_rate[n[a]];
@@ -108,6 +109,7 @@ void interpolate(const FlowBatch<E, V>& b, const FlowPoint<E, V>& at, const Flow
   s = FlowState<V, dim>{};
   k = FlowCoefficients<V, dim>{};
   k.h = b.h;
+  k.viscosity = b.viscosity;
   for (int a = 0; a < E::NV; ++a) {
     const double N = t.N[q][a];
     k.alpha += b.alpha[a] * N;

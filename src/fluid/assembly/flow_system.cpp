@@ -187,6 +187,7 @@ FlowData FlowSystem::data(const StepFields& fields, const double* state) const {
   d.vertices = mesh_.cell_nodes.data();
   d.coordinates = mesh_.cell_coordinates.data();
   d.cell_size = cell_size_.data();
+  d.eddy_viscosity = fields.eddy_viscosity.empty() ? nullptr : fields.eddy_viscosity.data();
   d.state = state;
   d.layout = layout_;
   d.alpha = fields.alpha.data();

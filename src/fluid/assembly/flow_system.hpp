@@ -21,6 +21,7 @@ struct StepFields {
   std::vector<double> prescribed_velocity;         ///< [v][3] m/s
   std::vector<double> prescribed_flow;             ///< [p] m3/s
   std::vector<double> boundary_pressure;           ///< [p] Pa
+  std::vector<double> eddy_viscosity;              ///< [cells] Pa s; empty: none
   double backflow = 0.5;
   FlowParameters parameters;
 };

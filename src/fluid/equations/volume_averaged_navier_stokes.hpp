@@ -26,6 +26,7 @@ struct FlowCoefficients {
   T body[dim];          ///< N/m3, given force
   T load[dim];          ///< N/m3, density of the particles' force
   T response;           ///< kg/(m3 s), density of the particles' response
+  T viscosity;          ///< Pa s, with that of the turbulence
   T h;                  ///< m, shortest edge of the cell
 };
 
@@ -63,7 +64,7 @@ struct VolumeAveragedNavierStokes {
   static void residual(const FlowState<S, dim>& state, const FlowCoefficients<T, dim>& at, const FlowParameters& k,
                        FlowResidual<S, dim>& out) {
     const T mass = at.alpha * k.density;
-    const T shear = at.alpha * k.viscosity;
+    const T shear = at.alpha * at.viscosity;
     const T pressure_factor = k.model_a ? at.alpha : at.alpha * 0.0 + 1.0;
 
     S strong[dim];
@@ -83,7 +84,7 @@ struct VolumeAveragedNavierStokes {
         const S rate = state.velocity_gradient[i][j] + state.velocity_gradient[j][i];
         out.stress[i][j] = rate * shear;
         // Second derivatives of the velocity are left out: zero for P1, of higher order for Q1 and P2.
-        strong[i] -= rate * T(at.grad_alpha[j] * k.viscosity);
+        strong[i] -= rate * T(at.grad_alpha[j] * at.viscosity);
       }
     out.pressure_stress = -state.pressure;
     const S divergence = state.flux_divergence + at.alpha_rate;
