@@ -71,7 +71,7 @@ TEST_CASE("Every force at a distance that is cut off at more than a thousandth o
   CHECK(warnings({{"dlvo_type", "electrostatic"},
                   {"material_bead_surface_potential", "0.1"},
                   {"dlvo_debye_length", "1e-6"},
-                  {"dlvo_cutoff", "7.5e-6"}})
+                  {"dlvo_cutoff", "7.7e-6"}})
             .empty());
   const auto floats = [&](const char* cutoff) {
     return warnings({{"interfacial_type", "nicolson"},
