@@ -30,6 +30,10 @@ void add(std::vector<double>& row, const Vec3& v) { row.insert(row.end(), {v[0],
 void LedgerOptions::options(OptionGroup& option) {
   option("tolerance", tolerance, "-", "relative residual of the conservation ledger above which the run stops",
          positive);
+  option("mass_tolerance", mass_tolerance, "-",
+         "imbalance of the fluid's volume in a step, as a share of what comes in, above which the run stops; the "
+         "solvers' tolerances keep it far below",
+         positive);
 }
 
 Budget::Budget(Options& options, bool with_fluid, bool with_particles)
@@ -142,6 +146,11 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeA
         fmt::format("the ledger is out of balance at t = {:g} s: residual {:.3g} (exchange {:.3g}, particles "
                     "{:.3g}, taken {:.3g}), allowed {:g} (-ledger_tolerance)",
                     moment.time, residual, exchange_residual, particle_residual, taken_residual, options_.tolerance));
+  if (with_fluid_ && !(std::abs(moment.fluid_step.mass_residual) <= options_.mass_tolerance))
+    throw RunError(
+        fmt::format("the fluid's volume is out of balance at t = {:g} s: {:.3g} of what comes in, allowed {:g} "
+                    "(-ledger_mass_tolerance)",
+                    moment.time, moment.fluid_step.mass_residual, options_.mass_tolerance));
   return residual;
 }
 

@@ -12,7 +12,7 @@ namespace silt {
 
 /// The options `-ledger_...`.
 struct LedgerOptions {
-  double tolerance = 1e-10;
+  double tolerance = 1e-10, mass_tolerance = 1e-2;
   void options(OptionGroup& option);
 };
 
@@ -24,7 +24,8 @@ struct LedgerOptions {
 ///    kicks, insertion and removal|, relative to those impulses, to what fields made particles give each other and to
 ///    sqrt(2 M E), the size of the momenta summed;
 ///  - taken_residual: what the particles say they received from the fluid against what the coupling gave, same scale;
-///  - mass_residual: the fluid's volume balance as the fluid reports it, relative to its inflow;
+///  - mass_residual: the fluid's volume balance as the fluid reports it, relative to what comes in (FluidStep); it is
+///    as small as the solver's tolerance, and above `-ledger_mass_tolerance` it stops the run;
 ///  - unaccounted_*: change of the fluid's momentum less the impulses through the boundary and of the particles; it
 ///    holds the time scheme's and the stabilisation's share and is no residual.
 ///  - of a gas, J: fluid_energy (internal and kinetic), energy_supply (boundaries and gravity, in the step),

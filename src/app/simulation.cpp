@@ -145,6 +145,8 @@ std::string Simulation::description() const {
 }
 
 int Simulation::check() {
+  // The first forces tell whether particles overlap at the start.
+  if (particles_ && !restart_) particles_->advance(now_.time, 1e-6 * particles_->time_step());
   progress_->header(description());
   progress_->line("the case is valid; nothing was run or written");
   return 0;

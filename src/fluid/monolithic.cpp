@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "fluid/assembly/flow_table.hpp"
+#include "fluid/volume_scale.hpp"
 
 namespace silt {
 namespace {
@@ -324,7 +325,8 @@ FluidStep Monolithic::report(double dt) const {
     step.boundary_force -= flows[b].force + integrals[b].convection;
   }
   for (int i = 0; i < mesh_.owned_nodes; ++i) stored += system_.lumped_mass()[i] * fields_.alpha_rate[i];
-  step.mass_residual = -(sum + mpi_sum(stored)) / (inflow > 0 ? inflow : 1.0);
+  stored = mpi_sum(stored);
+  step.mass_residual = -(sum + stored) / volume_scale(inflow, stored, mesh_.volume, dt);
 
   const LagrangeSpace& space = system_.space();
   const FlowTable& table = flow_table(mesh_.cell, space.order);

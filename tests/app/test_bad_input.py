@@ -127,6 +127,8 @@ WRONG = [
     ("a particle outside the mesh", {"start.csv": HEADER + "0.5,0.005,0.01,0.001,bead\n"}, FROM_FILE, ["start.csv:2"]),
     ("particles that overlap", {"start.csv": HEADER + "0.005,0.005,0.01,0.001,bead\n0.0052,0.005,0.01,0.001,bead\n"}, FROM_FILE, ["overlap"]),
     ("a particle in a wall", {"start.csv": HEADER + "0.0001,0.005,0.01,0.001,bead\n"}, FROM_FILE, ["overlap"]),
+    ("a check of particles that overlap", {"start.csv": HEADER + "0.005,0.005,0.01,0.001,bead\n0.0052,0.005,0.01,0.001,bead\n"}, FROM_FILE + ["-check"], ["overlap"]),
+    ("a check of a particle in a wall", {"start.csv": HEADER + "0.0001,0.005,0.01,0.001,bead\n"}, FROM_FILE + ["-check"], ["overlap"]),
     ("a particle file that is not HDF5", {"start.h5": "text"}, options("-insertion_bed_type", "file", "-insertion_bed_file", "start.h5"), ["start.h5"]),
     ("a particle step too long for the contacts", {}, options("-particles_step", "1e-3"), ["-particles_step"]),
     ("settling for a negative time", {}, options("-settle_time", "-1"), ["-settle_time"]),
@@ -148,7 +150,7 @@ WRONG = [
 ON_TWO_RANKS = {
     "a mistyped option on the command line", "a missing options file", "a mesh file that is not there",
     "a mesh file that is not Gmsh's", "a boundary without a condition", "a material without a density", "more particles than fit",
-    "a particle outside the mesh", "particles that overlap", "a particle file with a word for a number",
+    "a particle outside the mesh", "particles that overlap", "a check of particles that overlap", "a particle file with a word for a number",
     "a file in place of the output directory", "a probe outside the mesh", "an expression that does not end",
 }
 
