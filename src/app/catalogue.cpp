@@ -10,9 +10,11 @@
 #include "coupling/heat/nusselt.hpp"
 #include "coupling/thermophoresis.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
+#include "fluid/boundary/drive.hpp"
 #include "fluid/compressible/compressible.hpp"
 #include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid_options.hpp"
+#include "fluid/initial_state.hpp"
 #include "fluid/monolithic.hpp"
 #include "fluid/prescribed.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
@@ -54,8 +56,11 @@ Options everything() {
   Options options;
   declare<CaseOptions>(options, "");
   declare<TimeOptions>(options, "time");
+  declare<ExactOptions>(options, "exact");
   declare<MeshOptions>(options, "mesh");
   declare<FluidOptions>(options, "fluid");
+  declare<DriveOptions>(options, "fluid_drive");
+  declare<InitialStateOptions>(options, "fluid");
   declare<EnergyOptions>(options, "fluid");
   declare<CompressibleOptions>(options, "fluid");
   declare<PressureCorrectionOptions>(options, "fluid");

@@ -47,6 +47,7 @@ const std::vector<std::string> particle_columns = {"particles",
                                                    "particle_velocity_x",
                                                    "particle_velocity_y",
                                                    "particle_velocity_z"};
+const std::vector<std::string> drive_columns = {"drive_pressure_gradient", "drive_velocity"};
 const std::vector<std::string> heat_columns = {"fluid_heat", "energy_iterations", "least_temperature",
                                                "mean_temperature", "largest_temperature"};
 const std::vector<std::string> flow_columns = {"volume_flow", "mass_flow", "pressure", "force_x", "force_y", "force_z"};
@@ -72,9 +73,11 @@ Diagnostics::Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity
       up_(gravity.norm() > 0 ? Vec3(-gravity.normalized()) : Vec3::Unit(mesh.dimension - 1)),
       with_fluid_(fluid != nullptr),
       with_heat_(fluid && !fluid->temperature().empty()),
+      with_drive_(fluid && fluid->driven()),
       with_particles_(particles != nullptr),
       columns_(step_columns) {
   if (with_fluid_) append(columns_, fluid_columns);
+  if (with_drive_) append(columns_, drive_columns);
   if (with_heat_) append(columns_, heat_columns);
   if (particles) {
     append(columns_, particle_columns);
@@ -183,6 +186,7 @@ void Diagnostics::measure_fluid(const Moment& moment, std::vector<double>& row, 
                        step.mass_residual, drop, in, out, sum[0], std::sqrt(mpi_max(fastest)), mpi_min(least),
                        sum[1] / mesh_.volume, sum[2] / sum[1], sum[3] / sum[1], sum[4] / sum[1]})
     row.push_back(value);
+  if (with_drive_) row.insert(row.end(), {step.drive_gradient, step.drive_velocity});
   if (!with_heat_) return;
   const auto T = fluid.temperature();
   double low_T = infinity, mean = 0, high_T = -infinity;

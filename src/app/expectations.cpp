@@ -69,6 +69,7 @@ void ExpectationOptions::options(OptionGroup& option) {
       "quantity", quantity,
       "what is compared: a column of diagnostics.csv, <boundary>.<column>, <probe>.<column>, particle.<id>.<column>, "
       "<line>.<column> or <profile>.<column>");
+  option("less", less, "a quantity through time that is subtracted from the first before anything else");
   option("value", value, "", "figure expected, in the quantity's unit times the factor");
   option("values", values, "", "figures expected at the points of a line or profile");
   option("tolerance", tolerance, "", "largest error allowed", non_negative);
@@ -108,6 +109,10 @@ Expectations::Expectations(Options& options, const std::vector<std::string>& thr
                       hint.empty() ? "; see the columns of diagnostics.csv and the names of probes, lines and profiles"
                                    : fmt::format(", did you mean {}?", hint)));
     }
+    if (!given.less.empty() && (item.along || !has(through_time) ||
+                                std::find(through_time.begin(), through_time.end(), given.less) == through_time.end()))
+      throw UserError(fmt::format("-{}_less: '{}' and '{}' are not both quantities through time", prefix,
+                                  given.quantity, given.less));
     if (given.value.has_value() == !given.values.empty())
       throw UserError(fmt::format("-{}: one of value and values must be given", prefix));
     if (!given.values.empty() && !item.along)
@@ -126,9 +131,11 @@ Expectations::Expectations(Options& options, const std::vector<std::string>& thr
 void Expectations::sample(double time, const Quantities& quantities) {
   for (auto& item : items_) {
     if (item.along) continue;
-    if (const auto value = quantities.find(item.options.quantity)) {
+    const auto value = quantities.find(item.options.quantity);
+    const auto less = item.options.less.empty() ? std::optional<double>(0) : quantities.find(item.options.less);
+    if (value && less) {
       item.times.push_back(time);
-      item.values.push_back(*value);
+      item.values.push_back(*value - *less);
     }
   }
 }

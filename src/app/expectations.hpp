@@ -14,7 +14,7 @@ class Profiles;
 
 /// `-expect_<name>_...`: a figure that the run must give.
 struct ExpectationOptions {
-  std::string quantity;
+  std::string quantity, less;
   std::optional<double> value;
   std::vector<double> values;
   std::optional<double> tolerance;

@@ -88,6 +88,9 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
     throw UserError(
         "-fluid_symmetry axisymmetric carries no particles, which move in space: give a mesh in space (or no "
         "-insertion_...)");
+  if (fluid_ && particles_ && options.given("fluid_void_fraction") &&
+      options.find("fluid_type").value_or("incompressible") == "incompressible")
+    throw UserError("-fluid_void_fraction excludes particles, which make the void fraction (-insertion_...)");
   if (fluid_ && particles_)
     coupling_ = std::make_unique<Coupling>(*mesh_, *particles_, *fluid_, options, case_.gravity);
   if (!coupling_ && options.given("brownian_temperature"))
@@ -95,12 +98,14 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
   const bool flow = fluid_ != nullptr, grains = particles_ != nullptr;
   output_ = std::make_unique<Output>(*mesh_, options, flow, grains);
   diagnostics_ = std::make_unique<Diagnostics>(*mesh_, options, case_.gravity, fluid_.get(), particles_.get());
+  exact_ = std::make_unique<ExactSolution>(*mesh_, options, fluid_.get());
   probes_ = std::make_unique<Probes>(*mesh_, options, fluid_.get());
   profiles_ = std::make_unique<Profiles>(*mesh_, options, grains);
   budget_ = std::make_unique<Budget>(options, flow, grains);
   walls_ = std::make_unique<WallTable>(particles_.get());
   energy_ = std::make_unique<EnergyTable>(particles_.get());
   auto through_time = diagnostics_->columns(), along_lines = probes_->line_columns();
+  for (const auto& column : exact_->columns()) through_time.push_back(column);
   for (const auto& column : walls_->columns()) through_time.push_back(column);
   for (const auto& column : energy_->quantities()) through_time.push_back(column);
   for (const auto& column : probes_->columns()) through_time.push_back(column);
@@ -187,6 +192,7 @@ void Simulation::start() {
   checkpoint_->start(now_.time);
   balance_->start(now_.time);
   diagnostics_->start(output_->directory());
+  exact_->start(output_->directory());
   probes_->start(output_->directory());
   budget_->start(output_->directory(), fluid_.get(), particles_.get());
   if (particles_) departures_.start(output_->directory());
@@ -333,6 +339,7 @@ void Simulation::report() {
         budget_->close(now_, particles_.get(), coupling_ ? coupling_->accounts() : ExchangeAccounts{});
   Quantities quantities;
   diagnostics_->sample(now_, quantities);
+  exact_->sample(now_, quantities);
   probes_->sample(now_, quantities);
   profiles_->sample(now_);
   departures_.record(now_);

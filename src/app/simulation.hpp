@@ -11,6 +11,7 @@
 #include "app/departures.hpp"
 #include "app/diagnostics.hpp"
 #include "app/energy_table.hpp"
+#include "app/exact_solution.hpp"
 #include "app/expectations.hpp"
 #include "app/moment.hpp"
 #include "app/output.hpp"
@@ -95,6 +96,7 @@ class Simulation {
 
   std::unique_ptr<Output> output_;
   std::unique_ptr<Diagnostics> diagnostics_;
+  std::unique_ptr<ExactSolution> exact_;
   std::unique_ptr<Probes> probes_;
   std::unique_ptr<Profiles> profiles_;
   std::unique_ptr<Budget> budget_;

@@ -32,7 +32,7 @@ double Expression::operator()(const Vec3& x, double t) const {
   return parser_->Eval();
 }
 
-VectorExpression::VectorExpression(const std::string& option, const std::string& text) {
+std::array<std::string, 3> split_formulas(const std::string& option, const std::string& text) {
   std::array<std::string, 3> parts;
   size_t part = 0;
   int depth = 0;
@@ -46,6 +46,11 @@ VectorExpression::VectorExpression(const std::string& option, const std::string&
   }
   if (part != 2)
     throw UserError(fmt::format("option -{}: '{}' must be three formulas separated by commas", option, text));
+  return parts;
+}
+
+VectorExpression::VectorExpression(const std::string& option, const std::string& text) {
+  const auto parts = split_formulas(option, text);
   for (int d = 0; d < 3; ++d) components_[d] = std::make_unique<Expression>(option, parts[d]);
 }
 

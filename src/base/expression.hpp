@@ -31,6 +31,9 @@ class Expression {
   bool constant_ = false, uniform_ = false;
 };
 
+/// The three formulas of a text "0, 0, 0.6*min(t/0.1, 1)"; throws UserError naming the option when there are not three.
+std::array<std::string, 3> split_formulas(const std::string& option, const std::string& text);
+
 /// Three formulas separated by commas: "0, 0, 0.6*min(t/0.1, 1)".
 class VectorExpression {
  public:

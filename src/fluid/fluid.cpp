@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "fluid/boundary/drive.hpp"
 #include "fluid/compressible/compressible.hpp"
 #include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid_options.hpp"
@@ -32,6 +33,21 @@ std::span<const double> Fluid::turbulent_dissipation() const {
   return turbulence() ? turbulence()->dissipation() : std::span<const double>{};
 }
 
+void Fluid::set_void_fraction(const Mesh& mesh, double time) {
+  if (!void_fraction_formula_) return;
+  // The rate is that at the end of the step, by central differences: of higher order than that of the step's change.
+  constexpr double h = 1e-6;
+  bool wrong = false;
+  for (int i = 0; i < mesh.nodes; ++i) {
+    const Vec3 x = vec3(&mesh.node_coordinates[3 * static_cast<std::size_t>(i)]);
+    const double alpha = load_.void_fraction[i] = void_fraction_formula_(x, time);
+    load_.void_fraction_rate[i] = (void_fraction_formula_(x, time + h) - void_fraction_formula_(x, time - h)) / (2 * h);
+    wrong |= !(alpha > 0 && alpha <= 1);
+  }
+  if (mpi_any(wrong))
+    throw UserError(fmt::format("-fluid_void_fraction is not above 0 and at most 1 everywhere at t = {:g} s", time));
+}
+
 std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const Vec3& gravity) {
   FluidOptions fluid;
   options.read("fluid", fluid);
@@ -50,6 +66,11 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
       throw UserError("-fluid_scheme pressure_correction is not available with -fluid_type compressible");
     if (options.given("fluid_energy") && !fluid.energy)
       throw UserError("-fluid_energy no is not available with -fluid_type compressible");
+    Drive::refuse(options, "with -fluid_type compressible");
+    for (const char* name : {"fluid_initial_solve", "fluid_initial_file"})
+      if (options.given(name)) throw UserError(fmt::format("-{} is not available with -fluid_type compressible", name));
+    if (options.given("fluid_void_fraction"))
+      throw UserError("-fluid_void_fraction is not available with -fluid_type compressible");
     auto gas = make_compressible(mesh, options, fluid, gravity);
     gas->unknowns_ = (mesh.dimension + 2) * mesh.total_nodes;
     gas->description_ = fmt::format("compressible, ideal gas, {} Pa s, BDF{}", fluid.viscosity, fluid.order);
@@ -58,6 +79,7 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
   if (!(fluid.viscosity > 0))
     throw UserError("option -fluid_viscosity: it must be above 0 unless the flow is compressible");
   if (fluid.type == "prescribed") {
+    Drive::refuse(options, "with -fluid_type prescribed");
     auto given = std::make_unique<Prescribed>(mesh, options, fluid);
     given->description_ =
         fmt::format("prescribed, {} kg/m3, {} Pa s, model {}", fluid.density, fluid.viscosity, fluid.model);

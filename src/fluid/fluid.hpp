@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -39,8 +40,10 @@ struct FluidStep {
   Vec3 momentum = Vec3::Zero();  ///< kg m/s, int alpha rho u at the end of the step
   Vec3 boundary_force =
       Vec3::Zero();  ///< N, pressure, viscous and convective momentum flux through the boundary (into the fluid)
-  double heat = 0;   ///< J, at the end of the step, counted from the reference temperature
-  double energy_supply = 0;  ///< W, given to the total energy by boundaries and gravity; compressible flow
+  double drive_gradient = 0;  ///< Pa/m, fall of the mean pressure that drives a periodic flow
+  double drive_velocity = 0;  ///< m/s, mean superficial velocity along its direction
+  double heat = 0;            ///< J, at the end of the step, counted from the reference temperature
+  double energy_supply = 0;   ///< W, given to the total energy by boundaries and gravity; compressible flow
 };
 
 /// Volume flow and force per named boundary.
@@ -81,6 +84,8 @@ class Fluid {
     (void)reference;
     return 0;
   }
+  /// True when the flow through a periodic domain is driven (`-fluid_drive_...`).
+  bool driven() const { return driven_; }
   /// J/(kg K) and W/(m K); 0 when no energy equation is solved.
   double heat_capacity() const { return heat_capacity_; }
   double conductivity() const { return conductivity_; }
@@ -134,6 +139,12 @@ class Fluid {
   /// [nodes] m2/s2 and m2/s3: k and epsilon; empty for laminar flow and for models of turbulence that have none.
   virtual std::span<const double> turbulent_energy() const;
   virtual std::span<const double> turbulent_dissipation() const;
+  /// [cells][points][3] m/s at the points of a rule on the reference cell, where the velocity is of higher order than
+  /// the nodes tell; empty where it is not.
+  virtual std::vector<double> velocity_at(const Quadrature& rule) const {
+    (void)rule;
+    return {};
+  }
   /// [nodes] the void fraction that particles see instead of their own; empty unless it is prescribed.
   virtual std::span<const double> given_void_fraction() const { return {}; }
   /// Flow and force per boundary, in the order of Mesh::boundaries. Collective.
@@ -152,10 +163,15 @@ class Fluid {
   virtual void restored() {}
 
  protected:
+  /// `-fluid_void_fraction` of a solved fluid (a fixed porous matrix without drag): alpha at `time` and its rate become
+  /// the load. Collective.
+  void set_void_fraction(const Mesh& mesh, double time);
+  std::function<double(const Vec3&, double)> void_fraction_formula_;
   ParticleLoad load_;
   double density_ = 0, viscosity_ = 0, heat_capacity_ = 0, conductivity_ = 0;
   bool model_a_ = true;
   bool reduced_pressure_ = true;
+  bool driven_ = false;
   std::string description_;
   long long unknowns_ = 0;
 };

@@ -19,6 +19,7 @@ struct FluidOptions {
   std::string initial_velocity = "0, 0, 0";
   std::string initial_pressure = "0";
   std::string body_force = "0, 0, 0";
+  std::string void_fraction;
 
   void options(OptionGroup& option) {
     option("type", type, {"incompressible", "compressible", "prescribed", "none"},
@@ -42,6 +43,9 @@ struct FluidOptions {
     option("energy", energy, "solve the energy equation: the fluid has a temperature");
     option("initial_velocity", initial_velocity, "m/s, formulas in x, y, z");
     option("initial_pressure", initial_pressure, "Pa, formula in x, y, z");
+    option("void_fraction", void_fraction,
+           "formula in x, y, z, t: void fraction of a fixed matrix that fills the domain (without particles), or what "
+           "the particles of a prescribed fluid see; default: what the particles leave");
     option("body_force", body_force, "N/m3 of mixture, formulas in x, y, z, t");
   }
 };

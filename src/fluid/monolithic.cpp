@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.hpp"
 #include "fluid/assembly/flow_table.hpp"
-#include "fluid/volume_scale.hpp"
+#include "fluid/initial_state.hpp"
 
 namespace silt {
 namespace {
@@ -42,8 +43,8 @@ Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& f
       energy_(EnergyEquation::create(mesh, options, fluid.energy, fluid.density, gravity, boundary_,
                                      system_.space().order)),
       turbulence_(Turbulence::create(mesh, options, boundary_)),
-      order_(fluid.order),
-      gravity_(gravity) {
+      drive_(Drive::create(mesh, options, fluid.density)),
+      order_(fluid.order) {
   density_ = fluid.density;
   viscosity_ = fluid.viscosity;
   model_a_ = fluid.model == "a";
@@ -58,14 +59,18 @@ Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& f
   k.grad_div = options_.grad_div.value_or(stabilised);
   k.model_a = model_a_;
   k.load_as_density = !system_.equal_order();
-  if (fluid.hydrostatic)
-    for (int i = 0; i < 3; ++i) k.gravity[i] = gravity[i];
+  if (fluid.hydrostatic) static_head_ = density_ * gravity;
   fields_.backflow = fluid.backflow;
   if (options.given("fluid_body_force")) {
     auto force = std::make_shared<VectorExpression>("fluid_body_force", fluid.body_force);
     body_force_ = [force](const Vec3& x, double t) { return (*force)(x, t); };
   }
 
+  if (!fluid.void_fraction.empty()) {
+    auto formula = std::make_shared<Expression>("fluid_void_fraction", fluid.void_fraction);
+    void_fraction_formula_ = [formula](const Vec3& x, double t) { return (*formula)(x, t); };
+    set_void_fraction(mesh, 0);
+  }
   const LagrangeSpace& space = system_.space();
   const VectorExpression initial("fluid_initial_velocity", fluid.initial_velocity);
   const Expression initial_pressure("fluid_initial_pressure", fluid.initial_pressure);
@@ -79,10 +84,17 @@ Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& f
   for (int i = 0; i < mesh.nodes; ++i)
     pressure_[i] = initial_pressure(vec3(&mesh.node_coordinates[3 * static_cast<size_t>(i)]), 0);
   step_previous_.assign(mesh.nodes, 0.0);
+  driven_ = drive_ != nullptr;
+  if (drive_) last_drive_.assign(mesh.nodes, 0.0);
   change_.assign(3 * static_cast<size_t>(mesh.nodes), 0.0);
   unknown_ = system_.create_vector();
   prepare_step(0, 0);
+  const InitialState start = initial_state(mesh, options, boundary_, space.node_coordinates, energy_ != nullptr);
+  if (!start.velocity.empty()) velocity_ = start.velocity;
+  if (!start.pressure.empty()) pressure_ = start.pressure;
+  if (!start.temperature.empty()) energy_->set_initial(start.temperature);
   system_.constraints().impose(fields_.prescribed_velocity.data(), velocity_.data());
+  if (start.stokes) solve_stokes();
   velocity_previous_ = velocity_;
   if (turbulence_) {
     density_field_.assign(mesh.nodes, density_), viscosity_field_.assign(mesh.nodes, viscosity_);
@@ -123,6 +135,7 @@ void Monolithic::prepare_step(double time, double dt) {
     for (size_t i = 0; i < 3 * v; ++i) f.body[i] += all[i];
   }
   f.parameters.time_coefficient = bdf_.c0;
+  for (int i = 0; i < 3; ++i) f.parameters.mean_gradient[i] = static_head_[i];
   f.velocity_old = velocity_;
   f.history.assign(3 * v, 0.0);
   for (size_t i = 0; i < 3 * v; ++i)
@@ -145,12 +158,13 @@ void Monolithic::choose_scales() {
   const double size = std::pow(mesh_.volume / static_cast<double>(mesh_.total_cells), 1.0 / mesh_.dimension);
   k.continuity_scale = density_ * (speed + size * k.time_coefficient) + viscosity_ / size;
   double momentum = 0, continuity = 0;
+  const double driving = std::hypot(k.mean_gradient[0], k.mean_gradient[1], k.mean_gradient[2]);
   for (int i = 0; i < mesh_.owned_nodes; ++i) {
     const size_t n = 3 * static_cast<size_t>(i);
     const double mass = system_.lumped_mass()[i];
     const double u = std::max(vec3(&velocity_[n]).norm(), vec3(&fields_.prescribed_velocity[n]).norm());
     const double inertia = density_ * fields_.alpha[i] * (k.time_coefficient + u / size) + viscosity_ / (size * size);
-    const double force = mass * inertia * u + vec3(&fields_.nodal_load[n]).norm() +
+    const double force = mass * (inertia * u + driving) + vec3(&fields_.nodal_load[n]).norm() +
                          mass * vec3(&fields_.body[n]).norm() + fields_.nodal_response[i] * u;
     momentum += force * force;
     const double flow = k.continuity_scale * (mass * (fields_.alpha[i] * u / size + std::abs(fields_.alpha_rate[i])) +
@@ -177,6 +191,7 @@ void Monolithic::check_balance() const {
 }
 
 FluidStep Monolithic::advance(double time, double dt) {
+  set_void_fraction(mesh_, time + dt);
   prepare_step(time, dt);
   check_balance();
   choose_scales();
@@ -191,7 +206,7 @@ FluidStep Monolithic::advance(double time, double dt) {
   NewtonSolver::Result result;
   int energy_iterations = 0, turbulence_iterations = 0;
   try {
-    result = solver_.solve(fields_, unknown_, residual_scale_);
+    result = drive_ ? solve_driven(time + dt) : solver_.solve(fields_, unknown_, residual_scale_);
     if (energy_) {
       std::vector<double> eddy;
       if (turbulence_) eddy = turbulence_->cell_eddy_conductivity(heat_capacity_, conductivity_, viscosity_);
@@ -208,6 +223,7 @@ FluidStep Monolithic::advance(double time, double dt) {
   velocity_previous_ = before;
   std::fill(step_previous_.begin(), step_previous_.end(), dt);
   if (boundary_.closed()) remove_mean_pressure();
+  if (drive_) std::fill(last_drive_.begin(), last_drive_.end(), drive_gradient_);
   find_change(before);
   find_pressure_gradient();
   if (energy_) energy_->accept();
@@ -219,6 +235,80 @@ FluidStep Monolithic::advance(double time, double dt) {
   step.turbulence_iterations = turbulence_iterations;
   step.velocity_iterations = step.pressure_iterations = result.linear;
   return step;
+}
+
+NewtonSolver::Result Monolithic::solve_driven(double time) {
+  const int d = drive_->direction();
+  const double weight = fields_.parameters.mean_gradient[d];
+  const auto set = [&](double gradient) {
+    drive_gradient_ = gradient;
+    fields_.parameters.mean_gradient[d] = weight + gradient;
+    choose_scales();
+  };
+  if (drive_->controlled()) {
+    set(mpi_max(mesh_.nodes ? last_drive_[0] : -infinity));  // a rank may have no nodes
+    return find_drive(drive_->velocity(time), set);
+  }
+  set(drive_->gradient(time));
+  return solver_.solve(fields_, unknown_, residual_scale_);
+}
+
+NewtonSolver::Result Monolithic::find_drive(double target, const std::function<void(double)>& set) {
+  // Newton's method for the gradient around that for the flow; the answer of the flow to the gradient is that of its
+  // linearised equations.
+  constexpr int most = 20;
+  constexpr double close = 1e-10;  // of the flow
+  const int d = drive_->direction();
+  const auto mean_flow = [&] {
+    system_.from_vector(unknown_, velocity_.data(), pressure_.data());
+    return total_flux()[d] / mesh_.volume;
+  };
+  NewtonSolver::Result result;
+  const double at_start = std::abs(mean_flow() - target);
+  const VecHandle answer = system_.create_vector(), base = system_.create_vector(), more = system_.create_vector();
+  for (int k = 0; k < most; ++k) {
+    const NewtonSolver::Result once = solver_.solve(fields_, unknown_, residual_scale_);
+    result.newton += once.newton, result.linear += once.linear;
+    const double missing = target - mean_flow();
+    if (std::abs(missing) <= close * std::max(std::abs(target), at_start)) return result;
+    // -dR/dG, the residual being linear in the gradient
+    const double here = drive_gradient_, unit = std::max(std::abs(here), density_ * bdf_.c0 * std::abs(missing));
+    SILT_PETSC(system_.residual(fields_, unknown_, base));
+    set(here + unit);
+    SILT_PETSC(system_.residual(fields_, unknown_, more));
+    set(here);
+    SILT_PETSC(VecAXPY(base, -1, more));
+    solver_.linear_answer(fields_, unknown_, base, answer);
+    SILT_PETSC(VecAXPY(unknown_, 1, answer));
+    const double gained = mean_flow() - (target - missing);
+    SILT_PETSC(VecAXPY(unknown_, missing / gained - 1, answer));
+    const double next = here + unit * missing / gained;
+    if (!std::isfinite(next)) break;
+    set(next);
+  }
+  throw SolveFailure("no pressure gradient gives the flow asked for (-fluid_drive_...)");
+}
+
+void Monolithic::solve_stokes() {
+  const FlowParameters before = fields_.parameters;
+  FlowParameters& k = fields_.parameters;
+  const double size = std::pow(mesh_.volume / static_cast<double>(mesh_.total_cells), 1.0 / mesh_.dimension);
+  k.density = k.time_coefficient = 0;
+  k.continuity_scale = viscosity_ / size;
+  check_balance();
+  system_.to_vector(velocity_.data(), pressure_.data(), unknown_);
+  try {
+    if (drive_)
+      solve_driven(0);
+    else
+      solver_.solve(fields_, unknown_, 0);
+  } catch (const SolveFailure& failure) {
+    throw RunError(fmt::format("-fluid_initial_solve stokes: {}", failure.what()));
+  }
+  system_.from_vector(unknown_, velocity_.data(), pressure_.data());
+  if (boundary_.closed()) remove_mean_pressure();
+  if (drive_) std::fill(last_drive_.begin(), last_drive_.end(), drive_gradient_);
+  fields_.parameters = before;
 }
 
 void Monolithic::remove_mean_pressure() {
@@ -285,71 +375,9 @@ void Monolithic::find_pressure_gradient() {
   mesh_.sum_shared(pressure_gradient_.data(), 3);
   for (int i = 0; i < mesh_.nodes; ++i)
     vec3(&pressure_gradient_[3 * static_cast<size_t>(i)]) /= system_.lumped_mass()[i];
-}
-
-double Monolithic::courant_rate() const {
-  const LagrangeSpace& space = system_.space();
-  double rate = 0;
-  for (int c = 0; c < mesh_.cells; ++c)
-    for (int a = 0; a < space.nodes_per_cell; ++a) {
-      const size_t n = 3 * static_cast<size_t>(space.cell_nodes[static_cast<size_t>(c) * space.nodes_per_cell + a]);
-      rate = std::max(rate, vec3(&velocity_[n]).norm() / system_.cell_size()[c]);
-    }
-  return mpi_max(rate);
-}
-
-std::vector<BoundaryFlow> Monolithic::boundary_flow() const {
-  const std::vector<FacetIntegrals> integrals = system_.boundary_integrals(fields_, unknown_);
-  const std::vector<Vec3> forces = system_.boundary_forces(fields_, unknown_);
-  std::vector<BoundaryFlow> result(integrals.size());
-  for (size_t b = 0; b < result.size(); ++b) {
-    const bool open = boundary_.type(static_cast<int>(b)) == BoundaryType::pressure;
-    result[b].volume_flow = open ? integrals[b].volume_flow : boundary_.boundary_flow()[b];
-    result[b].mean_pressure = integrals[b].area > 0 ? integrals[b].pressure / integrals[b].area : 0;
-    result[b].mass_flow = density_ * result[b].volume_flow;
-    if (energy_) result[b].heat_flow = energy_->heat_flow()[b];
-    result[b].force = open ? integrals[b].traction : forces[b];
-  }
-  return result;
-}
-
-FluidStep Monolithic::report(double dt) const {
-  FluidStep step;
-  step.courant = courant_rate() * dt;
-  const std::vector<FacetIntegrals> integrals = system_.boundary_integrals(fields_, unknown_);
-  const std::vector<BoundaryFlow> flows = boundary_flow();
-  double sum = 0, inflow = 0, stored = 0;
-  for (size_t b = 0; b < flows.size(); ++b) {
-    sum += flows[b].volume_flow;
-    inflow += std::max(0.0, -flows[b].volume_flow);
-    step.boundary_force -= flows[b].force + integrals[b].convection;
-  }
-  for (int i = 0; i < mesh_.owned_nodes; ++i) stored += system_.lumped_mass()[i] * fields_.alpha_rate[i];
-  stored = mpi_sum(stored);
-  step.mass_residual = -(sum + stored) / volume_scale(inflow, stored, mesh_.volume, dt);
-
-  const LagrangeSpace& space = system_.space();
-  const FlowTable& table = flow_table(mesh_.cell, space.order);
-  const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;
-  Vec3 momentum = Vec3::Zero();
-  for (int c = 0; c < mesh_.cells; ++c) {
-    const double* x = &mesh_.cell_coordinates[3 * static_cast<size_t>(c) * np];
-    for (int q = 0; q < table.points; ++q) {
-      Mat3 J = Mat3::Zero();
-      for (int a = 0; a < np; ++a) J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
-      if (mesh_.dimension == 2) J(2, 2) = 1;
-      double alpha = 0;
-      Vec3 u = Vec3::Zero();
-      for (int a = 0; a < nv; ++a) {
-        const size_t n = space.cell_nodes[static_cast<size_t>(c) * nv + a];
-        alpha += table.N[q][a] * fields_.alpha[n];
-        u += table.N[q][a] * vec3(&velocity_[3 * n]);
-      }
-      momentum += table.weight[q] * J.determinant() * alpha * density_ * u;
-    }
-  }
-  for (int i = 0; i < 3; ++i) step.momentum[i] = mpi_sum(momentum[i]);
-  return step;
+  if (drive_)
+    for (int i = 0; i < mesh_.nodes; ++i)
+      pressure_gradient_[3 * static_cast<size_t>(i) + drive_->direction()] -= last_drive_[i];
 }
 
 std::unique_ptr<Fluid> make_monolithic(const Mesh& mesh, Options& options, const FluidOptions& fluid,

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "fluid/assembly/flow_system.hpp"
+#include "fluid/boundary/drive.hpp"
 #include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid.hpp"
 #include "fluid/fluid_options.hpp"
@@ -46,6 +47,7 @@ class Monolithic final : public Fluid {
   std::span<const double> temperature_change() const override {
     return energy_ ? energy_->temperature_change() : std::span<const double>();
   }
+  std::vector<double> velocity_at(const Quadrature& rule) const override;
   std::vector<BoundaryFlow> boundary_flow() const override;
   const Turbulence* turbulence() const override { return turbulence_.get(); }
   std::vector<Scalar> scalars() const override;
@@ -69,6 +71,13 @@ class Monolithic final : public Fluid {
   /// A closed domain whose boundaries let in more than they let out has no solution.
   void check_balance() const;
   void choose_scales();
+  /// The steady flow without inertia, for a start.
+  void solve_stokes();
+  NewtonSolver::Result solve_driven(double time);
+  /// Finds the gradient with which the flow is `target`; `set` puts a gradient into the step.
+  NewtonSolver::Result find_drive(double target, const std::function<void(double)>& set);
+  /// m3/s m, int alpha u over the domain, of velocity_. Collective.
+  Vec3 total_flux() const;
   void find_change(const std::vector<double>& before);
   void find_pressure_gradient();
   void remove_mean_pressure();
@@ -83,10 +92,10 @@ class Monolithic final : public Fluid {
   std::unique_ptr<EnergyEquation> energy_;
   std::unique_ptr<Turbulence> turbulence_;
   std::vector<double> density_field_, viscosity_field_;  ///< [nodes], uniform, for the turbulence
+  std::unique_ptr<Drive> drive_;
   StepFields fields_;
   Bdf bdf_{};
   int order_;
-  Vec3 gravity_;
   std::function<Vec3(const Vec3&, double)> body_force_;
   VecHandle unknown_;
   std::vector<double> velocity_, velocity_previous_;  ///< [v][3], u^n and u^{n-1}
@@ -95,6 +104,9 @@ class Monolithic final : public Fluid {
       step_previous_;  ///< [nodes] s, dt of the last step, 0 before the first (an array for the checkpoint)
   std::vector<double> vertices_, vertices_previous_;  ///< [nodes][3], velocities as the checkpoint sees them
   std::vector<double> middles_, middles_previous_;    ///< [cells][middles][3]
+  Vec3 static_head_ = Vec3::Zero();                   ///< Pa/m, gradient that the pressure holds at rest
+  double drive_gradient_ = 0;                         ///< Pa/m, of the present step
+  std::vector<double> last_drive_;                    ///< [nodes] Pa/m, of the last step (an array for the checkpoint)
   double residual_scale_ = 0;
 };
 

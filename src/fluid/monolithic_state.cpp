@@ -17,6 +17,7 @@ std::vector<Fluid::StateArray> Monolithic::state() {
   const size_t vertices = 3 * static_cast<size_t>(mesh_.nodes);
   vertices_.assign(velocity_.begin(), velocity_.begin() + static_cast<long>(vertices));
   vertices_previous_.assign(velocity_previous_.begin(), velocity_previous_.begin() + static_cast<long>(vertices));
+  if (drive_) result.push_back({"drive_gradient", &last_drive_, 1});
   if (energy_) energy_->add_state(result);
   if (turbulence_) turbulence_->add_state(result);
   if (system_.equal_order()) return result;

@@ -124,6 +124,19 @@ SNESConvergedReason NewtonSolver::run(SNES snes, Vec x, Result& result) {
   return reason;
 }
 
+void NewtonSolver::linear_answer(const StepFields& fields, Vec x, Vec b, Vec y) {
+  fields_ = &fields;
+  SILT_PETSC(system_.jacobian(fields, x, matrix_));
+  KSP ksp;
+  SILT_PETSC(SNESGetKSP(snes_, &ksp));
+  SILT_PETSC(KSPSetOperators(ksp, matrix_, matrix_));
+  KSPConvergedReason reason;
+  SILT_PETSC(KSPSolve(ksp, b, y));
+  SILT_PETSC(KSPGetConvergedReason(ksp, &reason));
+  if (reason < 0)
+    throw SolveFailure(fmt::format("the flow's linear equations were not solved ({})", KSPConvergedReasons[reason]));
+}
+
 NewtonSolver::Result NewtonSolver::solve(const StepFields& fields, Vec x, double scale) {
   fields_ = &fields;
   scale = std::max(scale, 1e-290);  // a fluid at rest has converged

@@ -24,6 +24,8 @@ class NewtonSolver {
   /// Solves from the guess x; `scale` is the size of the terms that balance in the residual, below 1e-10 of which it
   /// counts as zero. Throws SolveFailure with the reason; x is then undefined. Collective.
   Result solve(const StepFields& fields, Vec x, double scale);
+  /// Solves J(x) y = b with the Jacobian of the step at x. Throws SolveFailure. Collective.
+  void linear_answer(const StepFields& fields, Vec x, Vec b, Vec y);
   /// Residual norms of the last solve.
   const std::vector<double>& norms() const { return norms_; }
   Mat matrix() const { return matrix_; }

@@ -30,7 +30,7 @@ Prescribed::Prescribed(const Mesh& mesh, Options& options, const FluidOptions& f
   viscosity_ = fluid.viscosity;
   model_a_ = fluid.model == "a";
   reduced_pressure_ = !fluid.hydrostatic;
-  if (const auto text = read(options).void_fraction; !text.empty())
+  if (const auto& text = fluid.void_fraction; !text.empty())
     void_fraction_formula_.emplace("fluid_void_fraction", text);
   const PrescribedOptions given = read(options);
   heat_capacity_ = given.heat_capacity;

@@ -11,14 +11,12 @@ namespace silt {
 
 /// The options `-fluid_...` of a flow that is given, not solved.
 struct PrescribedOptions {
-  std::string velocity = "0, 0, 0", pressure = "0", void_fraction, temperature;
+  std::string velocity = "0, 0, 0", pressure = "0", temperature;
   std::string turbulent_energy, turbulent_dissipation;
   double heat_capacity = 0, conductivity = 0;
   void options(OptionGroup& option) {
     option("velocity", velocity, "m/s, formulas in x, y, z, t: the velocity of a prescribed fluid");
     option("pressure", pressure, "Pa, formula in x, y, z, t: the pressure of a prescribed fluid");
-    option("void_fraction", void_fraction,
-           "formula in x, y, z, t: the void fraction that the particles of a prescribed fluid see; default: their own");
     option("temperature", temperature, "K, formula in x, y, z, t: the temperature of a prescribed fluid");
     option("turbulent_energy", turbulent_energy,
            "m2/s2, formula in x, y, z, t: k of a prescribed fluid, for turbulent dispersion");

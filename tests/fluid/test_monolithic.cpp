@@ -245,3 +245,28 @@ TEST_CASE("The answer does not depend on the number of ranks, nor on one without
   CHECK(step.momentum.x() == Approx(2));
   CHECK(std::abs(step.mass_residual) < 1e-7);
 }
+
+TEST_CASE("Lagged Jacobians and inexact Newton, by option, reach the same flow", "[monolithic]") {
+  const auto solve = [](const std::vector<std::pair<std::string, std::string>>& words) {
+    MonolithicCase flow("quadrilateral", {10, 10}, "equal_order");
+    flow.options.set("fluid_viscosity", "0.02");
+    for (const auto& [name, value] : words) flow.options.set(name, value);
+    flow.all_boundaries("type", "no_slip");
+    flow.boundary("y_max", "velocity", "1, 0, 0");
+    flow.start();
+    int linear = 0;
+    for (int k = 0; k < 3; ++k) linear += flow.fluid->advance(0.1 * k, 0.1).velocity_iterations;
+    for (const auto& [name, value] : words) PetscOptionsClearValue(nullptr, ("-" + name).c_str());
+    return std::pair{std::vector<double>(flow.fluid->velocity().begin(), flow.fluid->velocity().end()), linear};
+  };
+  const auto exact = solve({{"fluid_snes_rtol", "1e-10"}});
+  const auto lagged = solve({{"fluid_snes_rtol", "1e-10"}, {"fluid_snes_lag_jacobian", "2"}});
+  const auto inexact = solve({{"fluid_snes_rtol", "1e-10"}, {"fluid_snes_ksp_ew", "1"}});
+  double differs = 0;
+  for (size_t i = 0; i < exact.first.size(); ++i)
+    differs =
+        std::max({differs, std::abs(exact.first[i] - lagged.first[i]), std::abs(exact.first[i] - inexact.first[i])});
+  CHECK(differs < 1e-7);
+  CHECK(lagged.second != exact.second);
+  CHECK(inexact.second != exact.second);
+}

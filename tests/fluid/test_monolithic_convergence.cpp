@@ -51,7 +51,9 @@ struct Manufactured {
       double acceleration = unsteady ? u[i].derivative[3].value : 0.0, viscous = 0;
       for (int j = 0; j < dimension; ++j) {
         acceleration += v.velocity[j] * u[i].derivative[j].value;
-        const First stress = f.alpha.value * (u[i].derivative[j] + u[j].derivative[i]);
+        First stress = f.alpha.value * (u[i].derivative[j] + u[j].derivative[i]);
+        if (i == j)
+          for (int k = 0; k < dimension; ++k) stress = stress - f.alpha.value * u[k].derivative[k] * (2.0 / 3);
         viscous += stress.derivative[j];
       }
       v.force[i] = v.alpha * density * acceleration - viscosity * viscous + v.alpha * f.p.derivative[i].value;

@@ -38,7 +38,7 @@ struct FlowData {
 struct FlowKernel {
   int lanes = 0;
   int rows = 0;  ///< unknowns of a cell: equal order interlaced by node, Taylor-Hood velocities first
-  /// Cells first..first+count-1 (count <= lanes): residual [lanes][rows] and, when not null, matrix
+  /// Cells first..first+count-1 (count <= lanes): residual [lanes][rows], or, when it is not null, the matrix alone
   /// [lanes][rows][rows].
   void (*evaluate)(const FlowData& data, int first, int count, double* residual, double* matrix) = nullptr;
   /// The superficial velocity whose divergence the continuity rows balance, at the points of the table:

@@ -1,9 +1,9 @@
 #pragma once
 // Included only by the translation units that instantiate it for one instruction set each; everything here depends on
 // the lane type, so no code compiled for a newer machine can replace another's.
-#include "base/dual.hpp"
 #include "fluid/assembly/flow_data.hpp"
 #include "fluid/assembly/flow_table.hpp"
+#include "fluid/equations/linearised_navier_stokes.hpp"
 
 namespace silt {
 
@@ -135,81 +135,60 @@ void interpolate(const FlowBatch<E, V>& b, const FlowPoint<E, V>& at, const Flow
   }
 }
 
-/// The state with one derivative direction for each of its members, in the order of the struct.
-template <class V, int dim>
-FlowState<Dual<FlowState<V, dim>::size, V>, dim> seed(const FlowState<V, dim>& s) {
-  using D = Dual<FlowState<V, dim>::size, V>;
-  FlowState<D, dim> result;
-  int direction = 0;
-  for (int i = 0; i < dim; ++i) result.velocity[i] = D::variable(s.velocity[i], direction++);
-  for (int i = 0; i < dim; ++i)
-    for (int j = 0; j < dim; ++j) result.velocity_gradient[i][j] = D::variable(s.velocity_gradient[i][j], direction++);
-  result.pressure = D::variable(s.pressure, direction++);
-  for (int i = 0; i < dim; ++i) result.pressure_gradient[i] = D::variable(s.pressure_gradient[i], direction++);
-  result.flux_divergence = D::variable(s.flux_divergence, direction);
-  return result;
-}
-
 /// out[row] += test functions times integrand r.
 template <class E, class V>
 void test_with(const V (&w)[E::NV], const FlowPoint<E, V>& at, const FlowTable& t, int q,
-               const FlowResidual<V, E::dim>& r, V* out, int stride) {
+               const FlowResidual<V, E::dim>& r, V* out) {
   constexpr int dim = E::dim;
   for (int a = 0; a < E::NV; ++a)
     for (int i = 0; i < dim; ++i) {
       V sum = r.momentum[i] * t.N[q][a] + w[a] * at.gN[a][i] * r.pressure_stress;
       for (int j = 0; j < dim; ++j) sum += at.gN[a][j] * r.stress[i][j];
-      out[E::velocity_row(a, i) * stride] += sum;
+      out[E::velocity_row(a, i)] += sum;
     }
   for (int a = 0; a < E::NP; ++a) {
     V sum = r.continuity * t.M[q][a];
     for (int j = 0; j < dim; ++j) sum += at.gM[a][j] * r.flux[j];
-    out[E::pressure_row(a) * stride] += sum;
+    out[E::pressure_row(a)] += sum;
   }
 }
 
-/// f(member of a, matching member of b) over all members.
-template <class A, class B, int dim, class F>
-void for_each_pair(FlowResidual<A, dim>& a, const FlowResidual<B, dim>& b, F f) {
-  for (int i = 0; i < dim; ++i) {
-    f(a.momentum[i], b.momentum[i]);
-    f(a.flux[i], b.flux[i]);
-    for (int j = 0; j < dim; ++j) f(a.stress[i][j], b.stress[i][j]);
-  }
-  f(a.pressure_stress, b.pressure_stress);
-  f(a.continuity, b.continuity);
-}
-
+/// matrix[row][column] += derivative of the rows at one point.
 template <class E, class V>
 void add_jacobian(const FlowBatch<E, V>& b, const V (&w)[E::NV], const FlowPoint<E, V>& at, const FlowTable& t, int q,
-                  const FlowResidual<Dual<FlowState<V, E::dim>::size, V>, E::dim>& r, V* matrix) {
+                  const FlowState<V, E::dim>& s, const FlowCoefficients<V, E::dim>& k, const FlowParameters& parameters,
+                  V* matrix) {
   constexpr int dim = E::dim, rows = E::rows;
-  constexpr int gradient = dim, pressure = dim + dim * dim, slope = pressure + 1, flux = slope + dim;
-  FlowResidual<V, dim> column;
-  for (int n = 0; n < E::NV; ++n) {
-    const V N = at.volume * t.N[q][n];
-    V g[dim];
-    for (int j = 0; j < dim; ++j) g[j] = at.volume * at.gN[n][j];
-    for (int c = 0; c < dim; ++c) {
-      const V divergence = b.alpha[n] * g[c];
-      for_each_pair<V, Dual<FlowState<V, dim>::size, V>, dim>(column, r, [&](V& out, const auto& d) {
-        V sum = d.derivative[c] * N + d.derivative[flux] * divergence;
-        for (int j = 0; j < dim; ++j) sum += d.derivative[gradient + c * dim + j] * g[j];
-        out = sum;
-      });
-      test_with<E, V>(w, at, t, q, column, matrix + E::velocity_row(n, c), rows);
-    }
-  }
+  using Point = LinearisedNavierStokes<dim, V>;
+  const Point point(s, k, parameters);
+  typename Point::Column column[E::NV];
+  for (int n = 0; n < E::NV; ++n) column[n] = point.column(V{} + t.N[q][n], at.gN[n], b.alpha[n]);
+  V pressure_share[E::NP][dim], pressure_value[E::NP];  // of the pressure functions as unknowns
   for (int n = 0; n < E::NP; ++n) {
-    const V M = at.volume * t.M[q][n];
-    V g[dim];
-    for (int j = 0; j < dim; ++j) g[j] = at.volume * at.gM[n][j];
-    for_each_pair<V, Dual<FlowState<V, dim>::size, V>, dim>(column, r, [&](V& out, const auto& d) {
-      V sum = d.derivative[pressure] * M;
-      for (int j = 0; j < dim; ++j) sum += d.derivative[slope + j] * g[j];
-      out = sum;
-    });
-    test_with<E, V>(w, at, t, q, column, matrix + E::pressure_row(n), rows);
+    pressure_value[n] = at.volume * t.M[q][n];
+    for (int i = 0; i < dim; ++i) pressure_share[n][i] = point.share * at.gM[n][i];
+  }
+  V gradient[dim];
+  for (int a = 0; a < E::NV; ++a) {
+    for (int i = 0; i < dim; ++i) gradient[i] = at.volume * at.gN[a][i];
+    const auto test = point.velocity_test(at.volume * t.N[q][a], gradient);
+    V* row = matrix + E::velocity_row(a, 0) * rows;
+    for (int n = 0; n < E::NV; ++n) point.add(test, column[n], row + E::velocity_row(n, 0), rows);
+    for (int n = 0; n < E::NP; ++n)
+      for (int i = 0; i < dim; ++i)
+        row[i * rows + E::pressure_row(n)] +=
+            test.stream * pressure_share[n][i] - w[a] * at.gN[a][i] * pressure_value[n];
+  }
+  for (int a = 0; a < E::NP; ++a) {
+    for (int i = 0; i < dim; ++i) gradient[i] = at.volume * at.gM[a][i];
+    const auto test = point.pressure_test(pressure_value[a] * parameters.continuity_scale, gradient);
+    V* row = matrix + E::pressure_row(a) * rows;
+    for (int n = 0; n < E::NV; ++n) point.add(test, column[n], row + E::velocity_row(n, 0));
+    for (int n = 0; n < E::NP; ++n) {
+      V sum = test.stabilised[0] * pressure_share[n][0];
+      for (int j = 1; j < dim; ++j) sum += test.stabilised[j] * pressure_share[n][j];
+      row[E::pressure_row(n)] += sum;
+    }
   }
 }
 
@@ -224,9 +203,8 @@ void evaluate_flow(const FlowData& data, int first, int count, double* residual,
   for (int a = 0; a < E::NV; ++a) w[a] = data.parameters.model_a ? b.alpha[a] : b.alpha[a] * 0.0 + 1.0;
 
   // Not through a function of the equations: a plain inline function compiled here must not serve other machines.
-  double gravity[dim];
-  for (int i = 0; i < dim; ++i)
-    gravity[i] = data.parameters.model_a ? data.parameters.density * data.parameters.gravity[i] : 0.0;
+  double mean[dim];
+  for (int i = 0; i < dim; ++i) mean[i] = data.parameters.mean_gradient[i];
   const FlowTable& t = *data.table;
   V R[rows] = {};
   V K[rows * rows];
@@ -238,26 +216,30 @@ void evaluate_flow(const FlowData& data, int first, int count, double* residual,
     FlowState<V, dim> s;
     FlowCoefficients<V, dim> k;
     interpolate<E, V>(b, at, t, q, s, k);
-    FlowResidual<V, dim> value;
     if (matrix) {
-      using D = Dual<FlowState<V, dim>::size, V>;
-      FlowResidual<D, dim> r;
-      VolumeAveragedNavierStokes<dim>::residual(seed<V, dim>(s), k, data.parameters, r);
-      add_jacobian<E, V>(b, w, at, t, q, r, K);
-      for_each_pair<V, D, dim>(value, r, [](V& out, const D& d) { out = d.value; });
-    } else {
-      VolumeAveragedNavierStokes<dim>::residual(s, k, data.parameters, value);
+      add_jacobian<E, V>(b, w, at, t, q, s, k, data.parameters, K);
+      continue;
     }
-    for_each_pair<V, V, dim>(value, value, [&](V& out, const V&) { out *= at.volume; });
-    test_with<E, V>(w, at, t, q, value, R, 1);
+    FlowResidual<V, dim> value;
+    VolumeAveragedNavierStokes<dim>::residual(s, k, data.parameters, value);
+    for (int i = 0; i < dim; ++i) {
+      value.momentum[i] *= at.volume;
+      value.flux[i] *= at.volume;
+      for (int j = 0; j < dim; ++j) value.stress[i][j] *= at.volume;
+    }
+    value.pressure_stress *= at.volume;
+    value.continuity *= at.volume;
+    test_with<E, V>(w, at, t, q, value, R);
     for (int a = 0; a < E::NV; ++a)
-      for (int i = 0; i < dim; ++i) R[E::velocity_row(a, i)] -= w[a] * at.volume * (t.N[q][a] * gravity[i]);
+      for (int i = 0; i < dim; ++i) R[E::velocity_row(a, i)] -= w[a] * at.volume * (t.N[q][a] * mean[i]);
+  }
+  if (matrix) {
+    for (int k = 0; k < rows * rows; ++k)
+      for (int l = 0; l < W; ++l) matrix[static_cast<long>(l) * rows * rows + k] = K[k][l];
+    return;
   }
   for (int r = 0; r < rows; ++r)
     for (int l = 0; l < W; ++l) residual[static_cast<long>(l) * rows + r] = R[r][l];
-  if (matrix)
-    for (int k = 0; k < rows * rows; ++k)
-      for (int l = 0; l < W; ++l) matrix[static_cast<long>(l) * rows * rows + k] = K[k][l];
 }
 
 template <Cell C, int order, int W>

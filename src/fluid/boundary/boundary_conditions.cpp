@@ -24,6 +24,7 @@ void BoundaryOptions::options(OptionGroup& option) {
   option("velocity", velocity,
          "m/s; type velocity: superficial velocity (void fraction times velocity) as formulas in x, y, z, t; type "
          "no_slip: velocity of the wall; far_field, supersonic_inflow: velocity outside");
+  rotation.options(option);
   option("mass_flow", mass_flow, "kg/s into the domain (per metre of depth in 2D), a formula in t; uniform and normal");
   option(
       "pressure", pressure,
@@ -40,6 +41,7 @@ BoundaryConditions::BoundaryConditions(const Mesh& mesh, Options& options, doubl
   for (const auto& facet : facets_)
     for (int q = 0; q < facet.points; q++) areas_[facet.boundary] += facet.point[q].area.norm();
   for (auto& area : areas_) area = mpi_sum(area);
+  refuse_moving_through();
   find_nodes();
   velocity_.assign(3 * mesh.nodes, 0);
   pressure_.assign(mesh.nodes, 0);
@@ -82,11 +84,16 @@ void BoundaryConditions::read(Options& options) {
     };
     check("velocity", condition.type == velocity || condition.type == no_slip || outside,
           condition.type == velocity || condition.type == supersonic_inflow);
+    check("rotation_rate", condition.type == no_slip, false);
+    for (const char* property : {"rotation_axis", "rotation_centre"})
+      check(property, condition.type == no_slip && options.given(prefix + "_rotation_rate"), false);
     check("mass_flow", condition.type == mass_flow, condition.type == mass_flow);
     check("pressure", condition.type == pressure || condition.type == total_pressure || outside,
           condition.type == total_pressure || outside || (compressible_ && condition.type == pressure));
-    condition.moving = condition.type == no_slip && options.given(prefix + "_velocity");
-    condition.velocity = std::make_unique<VectorExpression>(prefix + "_velocity", given.velocity);
+    condition.moving =
+        condition.type == no_slip && (options.given(prefix + "_velocity") || options.given(prefix + "_rotation_rate"));
+    condition.velocity =
+        std::make_unique<VectorExpression>(prefix + "_velocity", given.rotation.formula(prefix, given.velocity));
     condition.mass_flow = std::make_unique<Expression>(prefix + "_mass_flow", given.mass_flow);
     condition.pressure = std::make_unique<Expression>(prefix + "_pressure", given.pressure);
     closed_ = closed_ && condition.type < pressure;
@@ -97,6 +104,30 @@ void BoundaryConditions::read(Options& options) {
         "no condition on boundary {}: give -boundary_<name>_type no_slip, slip, symmetry, "
         "velocity, mass_flow or pressure{}",
         missing, compressible_ ? ", total_pressure, far_field, supersonic_inflow or supersonic_outflow" : ""));
+}
+
+void BoundaryConditions::refuse_moving_through() const {
+  for (std::size_t b = 0; b < conditions_.size(); b++) {
+    if (!conditions_[b].moving) continue;
+    for (double time : {0.0, 1.0}) {  // a wall may start from rest
+      double through = 0, along = 0;
+      for (const auto& facet : facets_) {
+        if (facet.boundary != static_cast<int>(b)) continue;
+        double flow = 0;  // a facet of a shaft is a chord: what goes in at one end comes out at the other
+        for (int q = 0; q < facet.points; q++) {
+          const Vec3 u = (*conditions_[b].velocity)(facet.point[q].x, time);
+          flow += u.dot(facet.point[q].area);
+          along += u.norm() * facet.point[q].area.norm();
+        }
+        through += std::abs(flow);
+      }
+      if (mpi_sum(through) > 0.01 * mpi_sum(along))
+        throw UserError(fmt::format(
+            "-boundary_{0}_velocity, -boundary_{0}_rotation_rate: the wall would move through its own surface, which "
+            "stays where it is; only motion along it is available (type velocity: fluid that passes a boundary)",
+            mesh_.boundaries[b]));
+    }
+  }
 }
 
 void BoundaryConditions::find_nodes() {

@@ -9,6 +9,7 @@
 #include "base/expression.hpp"
 #include "base/mesh.hpp"
 #include "base/options.hpp"
+#include "base/surface_motion.hpp"
 #include "fluid/boundary/facets.hpp"
 #include "fluid/boundary/temperature_condition.hpp"
 #include "fluid/turbulence/turbulence_options.hpp"
@@ -34,6 +35,7 @@ struct BoundaryOptions {
   std::string velocity = "0, 0, 0";
   std::string mass_flow = "0";
   std::string pressure = "0";
+  SurfaceMotion rotation;
   TemperatureOptions temperature;
   TurbulenceInflowOptions turbulence;
   void options(OptionGroup& option);
@@ -122,6 +124,8 @@ class BoundaryConditions {
   void find_nodes();
   void find_constraints(const std::vector<double>& slip_normals);
   void add_flow(double time);
+  /// A wall that moved through its own surface would need a mesh that moves: refused.
+  void refuse_moving_through() const;
 
   const Mesh& mesh_;
   bool compressible_ = false;

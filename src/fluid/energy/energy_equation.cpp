@@ -40,7 +40,8 @@ EnergyEquation::EnergyEquation(const Mesh& mesh, Options& options, double densit
         EnergyOptions read;
         options.read("fluid", read);
         for (const char* name : {"heat_capacity", "conductivity", "initial_temperature"})
-          if (!options.given(std::string("fluid_") + name))
+          if (!options.given(std::string("fluid_") + name) &&
+              !(std::string(name) == "initial_temperature" && options.given("fluid_initial_file")))
             throw UserError(fmt::format("-fluid_{} is missing: the energy equation needs it", name));
         if (read.expansion != 0 && !options.given("fluid_reference_temperature"))
           throw UserError("-fluid_reference_temperature is missing: -fluid_expansion needs it");

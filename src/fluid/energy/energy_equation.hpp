@@ -56,6 +56,8 @@ class EnergyEquation {
             const std::vector<double>& outflow, const std::vector<double>* eddy_conductivity = nullptr);
   void accept();
 
+  /// Replaces the initial temperature, [nodes] K.
+  void set_initial(const std::vector<double>& temperature) { temperature_ = old_temperature_ = next_ = temperature; }
   std::span<const double> temperature() const { return temperature_; }
   std::span<const double> temperature_change() const { return change_; }
   /// W per boundary, heat that left through it in the last step: conducted, and carried by the flow relative to the

@@ -6,7 +6,8 @@ namespace silt {
 /// What stays the same over all points of a step. SI units.
 struct FlowParameters {
   double density = 1, viscosity = 1;
-  double gravity[3] = {0, 0, 0};
+  double mean_gradient[3] = {
+      0, 0, 0};  ///< N/m3, acts as a pressure gradient of -m does: rho g, and what drives a periodic flow
   double time_coefficient = 0;              ///< 1/s, factor of u^{n+1} in du/dt (BDF1: 1/dt, BDF2: 1.5/dt)
   double supg = 1, pspg = 1, grad_div = 1;  ///< factors of the stabilisation terms; 0 for the plain Galerkin form
   double continuity_scale =
@@ -51,8 +52,9 @@ struct FlowResidual {
 };
 
 /// Volume-averaged incompressible Navier-Stokes equations, rho constant:
-///   alpha rho (du/dt + u.grad u) - div(alpha mu (grad u + grad u^T)) + alpha grad p = alpha rho g + f   (model A;
-///   model B: grad p) d(alpha)/dt + div(alpha u) = 0
+///   alpha rho (du/dt + u.grad u) - div(alpha mu (grad u + grad u^T - 2/3 div u I)) + P (grad p - m) = f,   d(alpha)/dt
+///   + div(alpha u) = 0; P = alpha in model A, 1 in model B, m = rho g (when p holds the static head) plus what drives
+///   a periodic flow,
 /// with the residual-based variational multiscale terms SUPG, PSPG and grad-div. The term alpha grad p is tested in the
 /// form -int p div(alpha v)_h, the adjoint of the continuity equation: it does the work int p d(alpha)/dt exactly, and
 /// at a free boundary the pressure is a natural traction. Time scale tau after Tezduyar & Osawa (2000):
@@ -60,32 +62,52 @@ struct FlowResidual {
 /// in SUPG only beta stands in the last bracket. tau is differentiated with the rest: the Jacobian is exact.
 template <int dim>
 struct VolumeAveragedNavierStokes {
+  /// The momentum equation at the point: without the particles' density and the pressure, that density, and all of it
+  /// (second derivatives of the velocity are left out: zero for P1, of higher order for Q1 and P2).
+  template <class S, class T>
+  static void momentum(const FlowState<S, dim>& state, const FlowCoefficients<T, dim>& at, const FlowParameters& k,
+                       S (&galerkin)[dim], S (&particles)[dim], S (&strong)[dim]) {
+    const T mass = at.alpha * k.density;
+    const T pressure_factor = k.model_a ? at.alpha : at.alpha * 0.0 + 1.0;
+    const S thinning = dilation(state, at, k);
+    for (int i = 0; i < dim; ++i) {
+      S acceleration = state.velocity[i] * (T{} + k.time_coefficient) + at.history[i];
+      for (int j = 0; j < dim; ++j) acceleration += state.velocity[j] * state.velocity_gradient[i][j];
+      // The mean pressure gradient is tested like the pressure's own (row (a, i) gets -int w_a N_a m_i in the cell
+      // loop), so that a static head balances it exactly.
+      galerkin[i] = acceleration * mass - at.body[i];
+      particles[i] = (state.velocity[i] - at.velocity_old[i]) * at.response - at.load[i];
+      strong[i] = galerkin[i] + particles[i] +
+                  (state.pressure_gradient[i] - T(T{} + k.mean_gradient[i])) * pressure_factor -
+                  thinning * T(at.grad_alpha[i] / at.alpha);
+      for (int j = 0; j < dim; ++j)
+        strong[i] -=
+            (state.velocity_gradient[i][j] + state.velocity_gradient[j][i]) * T(at.grad_alpha[j] * at.viscosity);
+    }
+  }
+
+  /// -2/3 alpha mu div u, with div u by continuity: zero where alpha is 1, whatever the discrete velocity.
+  template <class S, class T>
+  static S dilation(const FlowState<S, dim>& state, const FlowCoefficients<T, dim>& at, const FlowParameters& k) {
+    S change = state.velocity[0] * at.grad_alpha[0] + at.alpha_rate;
+    for (int i = 1; i < dim; ++i) change += state.velocity[i] * at.grad_alpha[i];
+    return change * T((2.0 / 3.0) * at.viscosity);
+  }
+
   template <class S, class T>
   static void residual(const FlowState<S, dim>& state, const FlowCoefficients<T, dim>& at, const FlowParameters& k,
                        FlowResidual<S, dim>& out) {
     const T mass = at.alpha * k.density;
     const T shear = at.alpha * at.viscosity;
-    const T pressure_factor = k.model_a ? at.alpha : at.alpha * 0.0 + 1.0;
-
-    S strong[dim];
+    S galerkin[dim], particles[dim], strong[dim];
+    momentum(state, at, k, galerkin, particles, strong);
+    const S thinning = dilation(state, at, k);
     for (int i = 0; i < dim; ++i) {
-      S acceleration = state.velocity[i] * (T{} + k.time_coefficient) + at.history[i];
-      for (int j = 0; j < dim; ++j) acceleration += state.velocity[j] * state.velocity_gradient[i][j];
-      // In model A gravity is tested like the pressure gradient (row (a, i) gets
-      // -int w_a N_a rho g_i in the cell loop), so that the static head balances it.
-      const S galerkin = acceleration * mass - T(mass * (k.model_a ? 0.0 : k.gravity[i]) + at.body[i]);
-      const S particles = (state.velocity[i] - at.velocity_old[i]) * at.response - at.load[i];
-      out.momentum[i] = k.load_as_density ? galerkin + particles : galerkin;
-      strong[i] = galerkin + particles + state.pressure_gradient[i] * pressure_factor -
-                  T(mass * (k.model_a ? k.gravity[i] : 0.0));
+      out.momentum[i] = k.load_as_density ? galerkin[i] + particles[i] : galerkin[i];
+      for (int j = 0; j < dim; ++j)
+        out.stress[i][j] = (state.velocity_gradient[i][j] + state.velocity_gradient[j][i]) * shear;
+      out.stress[i][i] += thinning;
     }
-    for (int i = 0; i < dim; ++i)
-      for (int j = 0; j < dim; ++j) {
-        const S rate = state.velocity_gradient[i][j] + state.velocity_gradient[j][i];
-        out.stress[i][j] = rate * shear;
-        // Second derivatives of the velocity are left out: zero for P1, of higher order for Q1 and P2.
-        strong[i] -= rate * T(at.grad_alpha[j] * at.viscosity);
-      }
     out.pressure_stress = -state.pressure;
     const S divergence = state.flux_divergence + at.alpha_rate;
     out.continuity = divergence * (T{} + k.continuity_scale);

@@ -91,6 +91,7 @@ struct CellLoopTable {
   void (*projection)(const CellBatches&, const ContinuityTerms&, double*);
   void (*continuity)(const CellBatches&, const ContinuityTerms&, double*);
   void (*diffusion)(const CellBatches&, const double*, double*);
+  void (*drive)(const CellBatches&, const MomentumTerms&, double*);
   void (*effective_gradient)(const CellBatches&, const MomentumTerms&, double*);
 };
 

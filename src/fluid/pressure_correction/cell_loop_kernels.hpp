@@ -198,6 +198,45 @@ void momentum(const CellBatches& mesh, const MomentumTerms& in, double* values, 
   }
 }
 
+/// int P_e (N + tau alpha rho w.grad N): a uniform pressure gradient, as momentum() treats the pressure's own.
+template <int kind>
+void drive(const CellBatches& mesh, const MomentumTerms& in, double* sums) {
+  constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
+  for (int batch = 0; batch < mesh.batches; ++batch) {
+    const int* node = batch_nodes<kind>(mesh, batch);
+    const long at = static_cast<long>(batch) * W;
+    Geometry<kind> geometry(mesh, batch);
+    const auto& G = geometry.gradient;
+    Lanes w[nodes][D], alphas[nodes][1], r[nodes][1] = {}, share = constant(1), drag = {};
+    gather(w, in.velocity, 3, node);
+    for (int a = 0; a < nodes; ++a) alphas[a][0] = constant(1);
+    if (in.void_fraction) {
+      gather(alphas, in.void_fraction, 1, node);
+      share = load(in.cell_pressure_share + at);
+      drag = load(in.cell_drag + at);
+    }
+    const Lanes h = load(mesh.size + at), mu = viscosity_of(in.viscosity, in.eddy_viscosity, at);
+    for (int q = 0; q < Shape<kind>::points; ++q) {
+      geometry.at(*mesh.reference, q);
+      const double* N = mesh.reference->shape[q];
+      Lanes wq[D] = {}, alpha = {}, speed2 = {};
+      for (int a = 0; a < nodes; ++a) {
+        alpha += N[a] * alphas[a][0];
+        for (int d = 0; d < D; ++d) wq[d] += N[a] * w[a][d];
+      }
+      for (int d = 0; d < D; ++d) speed2 += wq[d] * wq[d];
+      const Lanes convection = alpha * (2 * in.density) / h, diffusion = alpha * (12 * mu) / (h * h);
+      const Lanes tau = in.supg / square_root(convection * convection * speed2 + diffusion * diffusion + drag * drag);
+      for (int a = 0; a < nodes; ++a) {
+        Lanes transport = wq[0] * G[a][0];
+        for (int d = 1; d < D; ++d) transport += wq[d] * G[a][d];
+        r[a][0] += geometry.volume * share * (N[a] + tau * alpha * in.density * transport);
+      }
+    }
+    scatter(r, sums, 1, node, lanes_of(mesh, batch));
+  }
+}
+
 template <int kind>
 void projection(const CellBatches& mesh, const ContinuityTerms& in, double* sums) {
   constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
@@ -327,6 +366,7 @@ constexpr CellLoopTable table = {W,
                                  projection<kind>,
                                  continuity<kind>,
                                  diffusion<kind>,
+                                 drive<kind>,
                                  effective_gradient<kind>};
 
 constexpr const CellLoopTable* tables[4] = {&table<0>, &table<1>, &table<2>, &table<3>};

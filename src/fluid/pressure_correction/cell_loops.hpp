@@ -40,6 +40,8 @@ class CellLoops {
   void continuity(const ContinuityTerms& in, double* sums) const { table_->continuity(mesh_, in, sums); }
   /// Adds int c grad N_a . grad N_b, c [padded_cells].
   void diffusion(const double* coefficient, double* values) const { table_->diffusion(mesh_, coefficient, values); }
+  /// [nodes]: what a fall of the pressure by 1 Pa/m adds to the right side of momentum() in its direction.
+  void drive(const MomentumTerms& in, double* sums) const { table_->drive(mesh_, in, sums); }
   /// [nodes][3]: (1/nv) int_e G summed over the cells of each node, G the effective pressure gradient of the momentum
   /// loop.
   void effective_gradient(const MomentumTerms& in, double* sums) const { table_->effective_gradient(mesh_, in, sums); }

@@ -51,6 +51,7 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
       pressure_solver_(graph_, boundaries_.pressure_boundary(), boundaries_.closed()),
       energy_(EnergyEquation::create(mesh, options, fluid.energy, fluid.density, gravity, boundaries_, 1)),
       turbulence_(Turbulence::create(mesh, options, boundaries_)),
+      drive_(Drive::create(mesh, options, fluid.density)),
       mass_(lumped_mass(mesh)) {
   load_ = ParticleLoad(mesh.nodes);
   density_ = fluid.density;
@@ -81,6 +82,13 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
     if (mesh.dimension == 2) velocity_[3 * i + 2] = 0;
     pressure_[i] = initial_pressure(x, 0);
   }
+  if (!fluid.void_fraction.empty()) {
+    auto formula = std::make_shared<Expression>("fluid_void_fraction", fluid.void_fraction);
+    void_fraction_formula_ = [formula](const Vec3& x, double t) { return (*formula)(x, t); };
+    set_void_fraction(mesh, 0);
+    void_fraction_ = old_void_fraction_ = load_.void_fraction;
+  }
+  start_from(options);
   old_velocity_ = velocity_;
   if (turbulence_) {
     density_field_.assign(n, density_), viscosity_field_.assign(n, viscosity_);
@@ -100,6 +108,7 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
   old_increment_factor_ = take();
   for (auto& scratch : scratch_) scratch = take();
 
+  if (drive_) start_drive();
   node_size_.assign(n, infinity);
   for (int c = 0; c < mesh.cells; ++c)
     for (int a = 0; a < mesh.nodes_per_cell; ++a) {
@@ -152,6 +161,7 @@ void PressureCorrection::prepare(double time, double dt, const Past& past) {
     }
     if (energy_) energy_->add_buoyancy(bdf_, load_.void_fraction, model_a_, weight_);
   }
+  if (drive_) choose_drive(time + dt);
   if (has_body_force_)
     for (int i = 0; i < n; ++i) {
       Vec3 force = body_force_expression_(vec3(&mesh_.node_coordinates[3 * i]), time + dt);
@@ -254,6 +264,7 @@ void PressureCorrection::assemble_momentum() {
   loops_.momentum(terms_, momentum_.values.data(), right_.data());
   add_backflow();
   mesh_.sum_shared(right_.data(), 3);
+  if (drive_) add_drive();
   if (!porous_) return;
   for (int i = 0; i < mesh_.owned_nodes; ++i) momentum_.values[graph_.diagonal[i]] += load_.response[i];
   for (int i = 0; i < mesh_.nodes; ++i)
@@ -306,6 +317,7 @@ void PressureCorrection::assemble_pressure(const Past& past) {
 }
 
 FluidStep PressureCorrection::advance(double time, double dt) {
+  set_void_fraction(mesh_, time + dt);
   const Past before = past();
   FluidStep step;
   try {
@@ -340,6 +352,7 @@ FluidStep PressureCorrection::advance(double time, double dt) {
   const FluidStep balance = report(dt);
   if (energy_) step.heat = energy_->heat();
   step.courant = balance.courant, step.momentum = balance.momentum, step.boundary_force = balance.boundary_force;
+  step.drive_gradient = balance.drive_gradient, step.drive_velocity = balance.drive_velocity;
   return step;
 }
 
@@ -351,6 +364,7 @@ void PressureCorrection::solve(const Past& before, FluidStep& step, std::vector<
   solution_ = convecting_;
   step.velocity_iterations += velocity_solver_.solve(momentum_, momentum_.diagonal(), boundaries_, right_, solution_,
                                                      scheme_.velocity_tolerance);
+  if (drive_ && drive_->controlled()) step.velocity_iterations += control_flow();
 
   std::vector<double> right = continuity(solution_, divergence);
   const std::vector<double> full_right = right;

@@ -5,6 +5,7 @@
 
 #include "base/nodal_matrix.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
+#include "fluid/boundary/drive.hpp"
 #include "fluid/energy/energy_equation.hpp"
 #include "fluid/fluid.hpp"
 #include "fluid/fluid_options.hpp"
@@ -71,6 +72,17 @@ class PressureCorrection : public Fluid {
   void set_momentum_terms();
   void assemble_momentum();
   void add_backflow();
+  /// Replaces the initial fields by those of `-fluid_initial_solve` or `-fluid_initial_file`.
+  void start_from(Options& options);
+  void start_drive();
+  /// The driving pressure gradient at a time, or the flow that it has to give.
+  void choose_drive(double time);
+  void add_drive();
+  /// Finds the driving pressure gradient with which solution_ carries the flow asked for. Returns iterations.
+  int control_flow();
+  void accept_drive();
+  /// m/s, mean over the domain of the superficial velocity along the drive. Collective.
+  double mean_flow(const std::vector<double>& u) const;
   std::vector<double> continuity(const std::vector<double>& u, std::vector<double>& divergence);
   void assemble_pressure(const Past& past);
   /// The pressure that balances the forces on the fluid at rest, for a start of which no pressure is known.
@@ -97,6 +109,7 @@ class PressureCorrection : public Fluid {
   PressureSolver pressure_solver_;
   std::unique_ptr<EnergyEquation> energy_;
   std::unique_ptr<Turbulence> turbulence_;
+  std::unique_ptr<Drive> drive_;
   std::vector<double> density_field_, viscosity_field_;  ///< [nodes], uniform, for the turbulence
   std::vector<double> mass_;                             ///< [nodes] m3, lumped
   std::vector<double> node_size_;                        ///< [nodes] m, shortest edge of the local cells around
@@ -120,8 +133,13 @@ class PressureCorrection : public Fluid {
   CellCoefficients cell_{};
   double *increment_factor_ = nullptr, *old_increment_factor_ = nullptr, *scratch_[4] = {};
   MomentumTerms terms_{};
-  std::vector<double> eddy_viscosity_;  ///< [padded cells] Pa s; empty without turbulence
-  std::vector<double> outflow_;         ///< [nodes] m3/s through the pressure boundaries, of the last step
+  std::vector<double> eddy_viscosity_;            ///< [padded cells] Pa s; empty without turbulence
+  std::vector<double> outflow_;                   ///< [nodes] m3/s through the pressure boundaries, of the last step
+  double drive_gradient_ = 0, drive_target_ = 0;  ///< Pa/m and m/s, of the present step
+  std::vector<double> last_drive_;                ///< [nodes] Pa/m, of the last step (an array for the checkpoint)
+  std::vector<double> drive_load_;                ///< [nodes] m3, right side of the velocity per driving gradient
+  std::vector<double> drive_share_;   ///< [nodes] 1, what the cells around a node see of it in pressure_gradient_
+  std::vector<double> drive_answer_;  ///< [nodes][3] velocity per driving gradient
 
   struct OutletFacet {
     const FacetRule* rule;

@@ -71,6 +71,11 @@ FluidStep PressureCorrection::report(double dt) const {
   std::vector<BoundaryFlow> flows;
   step.boundary_force = boundary_reactions(flows);
   for (const auto& flow : flows) step.boundary_force -= flow.force;
+  if (drive_) {  // what the mean pressure does to both phases; the particles' share is in their exchange
+    step.drive_gradient = drive_gradient_;
+    step.drive_velocity = mean_flow(velocity_);
+    step.boundary_force[drive_->direction()] += drive_gradient_ * mesh_.volume;
+  }
   std::array<double, 3> momentum{};
   for (int i = 0; i < mesh_.owned_nodes; ++i)
     for (int d = 0; d < 3; ++d) momentum[d] += density_ * mass_[i] * load_.void_fraction[i] * velocity_[3 * i + d];

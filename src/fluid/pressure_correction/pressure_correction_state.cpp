@@ -6,9 +6,27 @@
 
 #include "base/error.hpp"
 #include "fluid/assembly/flow_table.hpp"
+#include "fluid/initial_state.hpp"
+#include "fluid/monolithic.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
 
 namespace silt {
+
+void PressureCorrection::start_from(Options& options) {
+  boundaries_.evaluate(0, load_.void_fraction.data());
+  InitialState start = initial_state(mesh_, options, boundaries_, mesh_.node_coordinates, energy_ != nullptr);
+  if (start.stokes) {
+    const Monolithic slow(mesh_, options, fluid_, gravity_);
+    start.velocity.assign(slow.velocity().begin(), slow.velocity().end());
+    start.pressure.assign(slow.pressure().begin(), slow.pressure().end());
+  }
+  if (!start.velocity.empty()) velocity_ = start.velocity;
+  if (!start.pressure.empty()) {
+    pressure_ = start.pressure;
+    initial_pressure_given_ = true;
+  }
+  if (!start.temperature.empty()) energy_->set_initial(start.temperature);
+}
 
 PressureCorrection::Past PressureCorrection::past() const {
   double values[4] = {};
@@ -61,6 +79,7 @@ void PressureCorrection::accept(const Past& before, double dt, std::vector<doubl
   const int n = mesh_.nodes;
   const auto& outlet = boundaries_.pressure_boundary();
   set_pressure_gradient();
+  if (drive_) accept_drive();
   for (int i = 0; i < 3 * n; ++i) velocity_change_[i] = solution_[i] - velocity_[i];
   std::swap(old_increment_, increment_);
   std::swap(increment_, phi);
@@ -135,6 +154,10 @@ std::vector<Fluid::StateArray> PressureCorrection::state() {
                                     {"pressure_gradient", &pressure_gradient_, 3},
                                     {"velocity_change", &velocity_change_, 3},
                                     {"fluid_steps", &past_, 4}};
+  if (drive_) {
+    arrays.push_back({"drive_gradient", &last_drive_, 1});
+    arrays.push_back({"drive_answer", &drive_answer_, 3});
+  }
   if (energy_) energy_->add_state(arrays);
   if (turbulence_) turbulence_->add_state(arrays);
   return arrays;

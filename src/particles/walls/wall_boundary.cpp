@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/surface_motion.hpp"
 
 namespace silt {
 
@@ -36,8 +37,11 @@ std::vector<WallBoundary> read_wall_boundaries(const Mesh& mesh, Options& option
     boundary.material = wall_material(chosen.material, prefix, options, materials);
     // The velocity of an inflow is the fluid's; that of a wall is its own.
     if (type.empty() || type == "no_slip") {
-      if (const auto text = options.find(prefix + "_velocity")) {
-        VectorExpression velocity("-" + prefix + "_velocity", *text);
+      SurfaceMotion motion;
+      options.read(prefix, motion);
+      const auto text = options.find(prefix + "_velocity");
+      if (text || options.given(prefix + "_rotation_rate")) {
+        VectorExpression velocity("-" + prefix + "_velocity", motion.formula(prefix, text.value_or("0, 0, 0")));
         if (velocity.constant())
           boundary.velocity = velocity(Vec3::Zero(), 0);
         else

@@ -28,8 +28,8 @@ struct WallBoundaryOptions {
 };
 
 /// One boundary of the mesh for the particles, by the options `-boundary_<name>_particles`, `_material`, and
-/// `_velocity` where the boundary is `no_slip` (or has no fluid type): the velocity of the wall's material, the shape
-/// staying where it is (a conveyor, a lid, a rotating drum's shell).
+/// `_velocity` and `_rotation_...` where the boundary is `no_slip` (or has no fluid type): the velocity of the wall's
+/// material, the shape staying where it is (a conveyor, a lid, a rotating drum's shell).
 struct WallBoundary {
   BoundaryRole role = BoundaryRole::wall;
   int material = 0;                        ///< index into the materials

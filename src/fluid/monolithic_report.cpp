@@ -1,0 +1,106 @@
+// What a step of the monolithic scheme left: flows and forces at the boundaries, balances, the Courant number.
+#include <algorithm>
+#include <array>
+
+#include "fluid/assembly/flow_table.hpp"
+#include "fluid/monolithic.hpp"
+#include "fluid/space/quadratic_element.hpp"
+#include "fluid/volume_scale.hpp"
+
+namespace silt {
+
+double Monolithic::courant_rate() const {
+  const LagrangeSpace& space = system_.space();
+  double rate = 0;
+  for (int c = 0; c < mesh_.cells; ++c)
+    for (int a = 0; a < space.nodes_per_cell; ++a) {
+      const size_t n = 3 * static_cast<size_t>(space.cell_nodes[static_cast<size_t>(c) * space.nodes_per_cell + a]);
+      rate = std::max(rate, vec3(&velocity_[n]).norm() / system_.cell_size()[c]);
+    }
+  return mpi_max(rate);
+}
+
+std::vector<double> Monolithic::velocity_at(const Quadrature& rule) const {
+  if (system_.equal_order()) return {};
+  const LagrangeSpace& space = system_.space();
+  const int nv = space.nodes_per_cell;
+  std::vector<double> N(static_cast<size_t>(rule.points) * nv),
+      result(3 * static_cast<size_t>(mesh_.cells) * rule.points);
+  std::vector<std::array<double, 3>> slopes(nv);
+  for (int q = 0; q < rule.points; ++q)
+    quadratic_shape(mesh_.cell, rule.point[q].data(), &N[static_cast<size_t>(q) * nv],
+                    reinterpret_cast<double(*)[3]>(slopes.data()));
+  for (int c = 0; c < mesh_.cells; ++c)
+    for (int q = 0; q < rule.points; ++q)
+      for (int a = 0; a < nv; ++a)
+        vec3(&result[3 * (static_cast<size_t>(c) * rule.points + q)]) +=
+            N[static_cast<size_t>(q) * nv + a] *
+            vec3(&velocity_[3 * static_cast<size_t>(space.cell_nodes[static_cast<size_t>(c) * nv + a])]);
+  return result;
+}
+
+std::vector<BoundaryFlow> Monolithic::boundary_flow() const {
+  const std::vector<FacetIntegrals> integrals = system_.boundary_integrals(fields_, unknown_);
+  const std::vector<Vec3> forces = system_.boundary_forces(fields_, unknown_);
+  std::vector<BoundaryFlow> result(integrals.size());
+  for (size_t b = 0; b < result.size(); ++b) {
+    const bool open = boundary_.type(static_cast<int>(b)) == BoundaryType::pressure;
+    result[b].volume_flow = open ? integrals[b].volume_flow : boundary_.boundary_flow()[b];
+    result[b].mean_pressure = integrals[b].area > 0 ? integrals[b].pressure / integrals[b].area : 0;
+    result[b].mass_flow = density_ * result[b].volume_flow;
+    if (energy_) result[b].heat_flow = energy_->heat_flow()[b];
+    result[b].force = open ? integrals[b].traction : forces[b];
+  }
+  return result;
+}
+
+FluidStep Monolithic::report(double dt) const {
+  FluidStep step;
+  step.courant = courant_rate() * dt;
+  const std::vector<FacetIntegrals> integrals = system_.boundary_integrals(fields_, unknown_);
+  const std::vector<BoundaryFlow> flows = boundary_flow();
+  double sum = 0, inflow = 0, stored = 0;
+  for (size_t b = 0; b < flows.size(); ++b) {
+    sum += flows[b].volume_flow;
+    inflow += std::max(0.0, -flows[b].volume_flow);
+    step.boundary_force -= flows[b].force + integrals[b].convection;
+  }
+  for (int i = 0; i < mesh_.owned_nodes; ++i) stored += system_.lumped_mass()[i] * fields_.alpha_rate[i];
+  stored = mpi_sum(stored);
+  step.mass_residual = -(sum + stored) / volume_scale(inflow, stored, mesh_.volume, dt);
+
+  step.momentum = density_ * total_flux();
+  if (drive_) {  // what the mean pressure does to both phases; the particles' share is in their exchange
+    step.drive_gradient = drive_gradient_;
+    step.drive_velocity = step.momentum[drive_->direction()] / (density_ * mesh_.volume);
+    step.boundary_force[drive_->direction()] += drive_gradient_ * mesh_.volume;
+  }
+  return step;
+}
+
+Vec3 Monolithic::total_flux() const {
+  const LagrangeSpace& space = system_.space();
+  const FlowTable& table = flow_table(mesh_.cell, space.order);
+  const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;
+  Vec3 flux = Vec3::Zero();
+  for (int c = 0; c < mesh_.cells; ++c) {
+    const double* x = &mesh_.cell_coordinates[3 * static_cast<size_t>(c) * np];
+    for (int q = 0; q < table.points; ++q) {
+      Mat3 J = Mat3::Zero();
+      for (int a = 0; a < np; ++a) J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
+      if (mesh_.dimension == 2) J(2, 2) = 1;
+      double alpha = 0;
+      Vec3 u = Vec3::Zero();
+      for (int a = 0; a < nv; ++a) {
+        const size_t n = space.cell_nodes[static_cast<size_t>(c) * nv + a];
+        alpha += table.N[q][a] * fields_.alpha[n];
+        u += table.N[q][a] * vec3(&velocity_[3 * n]);
+      }
+      flux += table.weight[q] * J.determinant() * alpha * u;
+    }
+  }
+  for (int i = 0; i < 3; ++i) flux[i] = mpi_sum(flux[i]);
+  return flux;
+}
+
+}  // namespace silt

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+# processors: 2
+"""Flows that start from an earlier run on another mesh, from a potential flow and from a Stokes flow."""
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+
+SILT = os.path.abspath(sys.argv[1])
+CHANNEL = """\
+mesh: {{type: box, cell: {cell}, lower: [0, 0, 0], upper: [{length}, 1, 0], cells: {cells}}}
+gravity: [0, 0, 0]
+time: {{end: {end}, step: {step}}}
+fluid: {{density: 1, viscosity: 0.1{fluid}}}
+boundary:
+  x_min: {{type: velocity, velocity: "{inflow}, 0, 0"{temperature}}}
+  x_max: {{type: pressure}}
+  y_min: {{type: {wall}}}
+  y_max: {{type: {wall}}}
+output: {{directory: {out}, interval: {end}}}
+exact: {{velocity: "6*y*(1-y), 0, 0", pressure: "1.2*({length} - x)"}}
+"""
+ENERGY = ", energy: yes, heat_capacity: 1, conductivity: 0.1"
+wrong = []
+
+
+def expect(true, text):
+    if not true:
+        wrong.append(text)
+
+
+def run(folder, *words, ranks=1, **values):
+    values = dict(dict(cell="quadrilateral", length="2", cells="[24, 16]", end="10", step="0.1", fluid="", inflow="6*y*(1-y)", wall="no_slip", out="out", temperature=""), **values)
+    with open(os.path.join(folder, "case.yaml"), "w") as file:
+        file.write(CHANNEL.format(**values))
+    command = (["mpiexec", "-n", str(ranks)] if ranks > 1 else []) + [SILT, "case.yaml", *words]
+    return subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def errors(folder, out, row):
+    with open(os.path.join(folder, out, "errors.csv")) as file:
+        found = list(csv.DictReader(file))[row]
+    return float(found["velocity_error"]), float(found["pressure_error"])
+
+
+with tempfile.TemporaryDirectory() as folder:
+    done = run(folder, fluid=ENERGY + ', initial_temperature: "300 + y"', temperature=', temperature: {type: given, value: "300 + y"}')
+    expect(done.returncode == 0, f"first run: {done.stdout[-300:]}")
+    steady = errors(folder, "out", -1)
+    files = sorted(name for name in os.listdir(os.path.join(folder, "out", "fluid")) if name[0] == "0")
+    start = "out/fluid/" + files[-1]
+    for ranks in (1, 3):
+        for cell, cells in (("triangle", "[17, 23]"), ("quadrilateral", "[31, 12]")):
+            for scheme in ("pressure_correction", "monolithic"):
+                text = f"{cell}, {ranks} ranks, {scheme}"
+                done = run(folder, ranks=ranks, cell=cell, cells=cells, out="on", end="0.002", step="0.001", fluid=f", scheme: {scheme}, initial_file: {start}" + ENERGY, temperature=', temperature: {type: given, value: "300 + y"}')
+                expect(done.returncode == 0, f"{text}: {done.stdout[-300:]}")
+                if done.returncode == 0:
+                    # At the start: what the first run had, up to the interpolation between two meshes of about 1/16.
+                    velocity, pressure = errors(folder, "on", 0)
+                    expect(velocity < steady[0] + 0.01 and pressure < steady[1] + 0.02, f"{text}: errors {velocity}, {pressure} after {steady}")
+                    with open(os.path.join(folder, "on", "diagnostics.csv")) as file:
+                        mean = float(list(csv.DictReader(file))[0]["mean_temperature"])
+                    expect(abs(mean - 300.5) < 1e-2, f"{text}: mean temperature {mean}")
+    done = run(folder, length="3", out="wide", fluid=f", initial_file: {start}")
+    expect(done.returncode == 2 and "outside the earlier one" in done.stdout, f"a larger domain is refused: {done.stdout[-300:]}")
+    done = run(folder, out="both", fluid=f', initial_file: {start}, initial_velocity: "1, 0, 0"')
+    expect(done.returncode == 2 and "exclude each other" in done.stdout, f"two starts are refused: {done.stdout[-300:]}")
+    done = run(folder, out="none", fluid=", initial_file: out/fluid/999999.h5")
+    expect(done.returncode == 2 and "does not exist" in done.stdout, f"a missing file is refused: {done.stdout[-300:]}")
+    done = run(folder, out="cold", fluid=f", initial_file: {start}" + ENERGY.replace("energy: yes", "energy: no"))
+    expect(done.returncode == 2, "energy options without energy are refused")
+
+    # Stokes flow between the plates is Poiseuille's: the error is that of the mesh from the first instant.
+    for scheme in ("pressure_correction", "monolithic"):
+        done = run(folder, out="stokes", end="0.002", step="0.001", fluid=f", scheme: {scheme}, initial_solve: stokes")
+        expect(done.returncode == 0, f"stokes, {scheme}: {done.stdout[-300:]}")
+        if done.returncode == 0:
+            velocity, pressure = errors(folder, "stokes", 0)
+            expect(velocity < 0.01 and pressure < 0.05, f"stokes, {scheme}: errors {velocity}, {pressure}")
+        # Potential flow between slip walls: whatever comes in, it leaves evenly at some distance.
+        done = run(folder, out="potential", length="4", cells="[64, 16]", wall="slip", inflow="1 + cos(pi*y)", end="0.002", step="0.001", fluid=f", scheme: {scheme}, initial_solve: potential")
+        expect(done.returncode == 0, f"potential, {scheme}: {done.stdout[-300:]}")
+        if done.returncode == 0:
+            with open(os.path.join(folder, "potential", "diagnostics.csv")) as file:
+                first = list(csv.DictReader(file))[0]
+            expect(abs(float(first["fluid_velocity_x"]) - 1) < 5e-3, f"potential, {scheme}: mean velocity {first['fluid_velocity_x']}")
+            expect(abs(float(first["fluid_velocity_y"])) < 0.09, f"potential, {scheme}: cross flow {first['fluid_velocity_y']}")
+
+print("\n".join(wrong) if wrong else "the starts are what they should be")
+sys.exit(1 if wrong else 0)
