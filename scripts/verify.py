@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Runs the verification cases and keeps the page of their figures; started by scripts/verify."""
 import argparse
+import math
 import os
 import re
 import subprocess
@@ -23,7 +24,14 @@ under `expect:`; the solver itself compares. An error is relative unless the cas
 
 
 class Case:
-    """An options file with `expect:`; its header may say `# short` and `# ranks: N`."""
+    """An options file with `expect:`; its header may say `# short` and `# ranks: N`.
+
+    An order of convergence is expected by the comments
+      # order: <column of errors.csv> <order> ...
+      # level: <options of the coarsest run>      (one line a run, each finer than the last by the factor `# refine: 2`)
+    Such a case is run at every level and gives a line for each column: the order between the last two levels, which
+    passes when it falls short of the expected one by no more than 0.1.
+    """
 
     def __init__(self, path):
         self.path = path
@@ -31,6 +39,13 @@ class Case:
         text = open(os.path.join(ROOT, path)).read()
         self.expects = re.search(r"^expect:", text, re.M) is not None
         self.short = re.search(r"^#\s*short\s*$", text, re.M) is not None
+        orders = re.search(r"^#\s*order:(.*)$", text, re.M)
+        words = orders.group(1).split() if orders else []
+        self.orders = list(zip(words[::2], map(float, words[1::2])))
+        self.levels = [line.split() for line in re.findall(r"^#\s*level:(.*)$", text, re.M)]
+        refine = re.search(r"^#\s*refine:\s*(\S+)\s*$", text, re.M)
+        self.refine = float(refine.group(1)) if refine else 2.0
+        self.expects = self.expects or bool(self.orders)
         ranks = re.search(r"^#\s*ranks:\s*(\d+)\s*$", text, re.M)
         self.ranks = int(ranks.group(1)) if ranks else None
 
@@ -42,6 +57,44 @@ def find_cases():
         names = sorted(os.listdir(full)) if os.path.isdir(full) else []
         cases += [Case(os.path.join(folder, name)) for name in names if name.endswith(".yaml")]
     return [case for case in cases if case.expects]
+
+
+ORDER_SLACK = 0.1
+
+
+def last_row(path):
+    """{column: value} of the last row of a table; empty when there is none."""
+    if not os.path.exists(path):
+        return {}
+    lines = open(path).read().split()
+    return dict(zip(lines[0].split(","), map(float, lines[-1].split(",")))) if len(lines) > 1 else {}
+
+
+def run_orders(silt, case, ranks):
+    """Rows of a case that expects orders of convergence."""
+    started, errors, rows = time.time(), [], []
+    for k, level in enumerate(case.levels):
+        output = os.path.join(ROOT, "output", "verification", f"{case.name}_{k}")
+        command = [silt, case.path, "-output_directory", output] + level
+        if ranks > 1:
+            command = ["mpiexec", "-n", str(ranks)] + command
+        done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        found = last_row(os.path.join(output, "errors.csv")) if done.returncode == 0 else {}
+        if any(column not in found for column, _ in case.orders):
+            print("\n".join(f"  | {line}" for line in done.stdout.splitlines()[-15:]))
+            rows = [(case.name, "run", "complete", f"exit_{done.returncode}", "-", "-", "FAIL")]
+            break
+        errors.append(found)
+    for column, order in case.orders if not rows else []:
+        history = [found[column] for found in errors]
+        measured = math.log(history[-2] / history[-1]) / math.log(case.refine)
+        short = max(0.0, order - measured)
+        rows.append((case.name, column.replace("error", "order"), f"{order:g}", f"{measured:.4g}", f"{short:.3g}", f"{ORDER_SLACK:g}", "PASS" if short <= ORDER_SLACK else "FAIL"))
+        print("  | " + column + " " + " ".join(f"{e:.4g}" for e in history))
+    for row in rows:
+        print(*row)
+    print(f"  ({case.name}: {time.time() - started:.0f} s, {len(case.levels)} levels, {ranks} rank{'s' if ranks > 1 else ''})", flush=True)
+    return rows
 
 
 def run(silt, case, ranks):
@@ -106,7 +159,7 @@ def main():
     default_ranks = 1 if arguments.short else min(2, os.cpu_count() or 1)
     rows = []
     for case in cases:
-        rows += run(arguments.silt, case, arguments.ranks or case.ranks or default_ranks)
+        rows += (run_orders if case.orders else run)(arguments.silt, case, arguments.ranks or case.ranks or default_ranks)
     passed = sum(row[-1] == "PASS" for row in rows)
     if not arguments.short:
         version = subprocess.run([arguments.silt, "-version"], stdout=subprocess.PIPE, text=True).stdout.split()[1]
