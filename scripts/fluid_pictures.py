@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""Draws a picture of every case in inputs/fluid (or of those whose name contains a word) into docs/gallery/fluid.
+
+usage: scripts/fluid_pictures.py [word] [--keep]    needs build/silt, numpy, h5py, matplotlib (Debian's Python)
+
+Each case is run (--keep: only where it has no output yet); the picture shows its last output: the speed (the temperature where
+there is one, the Mach number of a gas), in the plane or in the middle plane of a box. Also writes docs/gallery/fluid/README.md.
+"""
+import argparse
+import glob
+import os
+import re
+import subprocess
+import sys
+
+import h5py
+import matplotlib
+import numpy
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.tri as tri  # noqa: E402
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+FOLDER = os.path.join(ROOT, "docs", "gallery", "fluid")
+
+
+def triangles(cells):
+    """Triangles of plane cells (XDMF order: around)."""
+    if cells.shape[1] == 3:
+        return cells
+    return numpy.vstack([cells[:, [0, 1, 2]], cells[:, [0, 2, 3]]])
+
+
+def middle_plane(points, cells, values):
+    """Points (x, y) of the mesh near the middle plane in z, and their values, triangulated anew."""
+    z = points[:, 2]
+    levels = numpy.unique(numpy.round(z, 9))
+    level = levels[len(levels) // 2]
+    near = numpy.abs(z - level) < 1e-8 * max(1, abs(level)) + 1e-9
+    return points[near, 0], points[near, 1], values[near]
+
+
+def picture(name, title, output):
+    folder = os.path.join(output, "fluid")
+    last = sorted(glob.glob(os.path.join(folder, "[0-9]*.h5")))[-1]
+    with h5py.File(os.path.join(folder, "mesh.h5")) as mesh:
+        points, cells = mesh["points"][:], mesh["cells"][:]
+    with h5py.File(last) as fields:
+        speed = numpy.linalg.norm(fields["velocity"][:], axis=1)
+        label, values = "speed, m/s", speed
+        if "mach" in fields:
+            label, values = "Mach number", fields["mach"][:].ravel()
+        elif "natural_convection" in name:
+            label, values = "temperature, K", fields["temperature"][:].ravel()
+    if cells.shape[1] == 8 or numpy.ptp(points[:, 2]) > 0:
+        x, y, values = middle_plane(points, cells, values)
+        mesh2 = tri.Triangulation(x, y)
+    else:
+        mesh2 = tri.Triangulation(points[:, 0], points[:, 1], triangles(cells))
+    width, height = numpy.ptp(mesh2.x), numpy.ptp(mesh2.y)
+    size = (4.8, min(4.2, max(1.5, 4.0 * height / width + 0.8)))
+    figure, axes = plt.subplots(figsize=size, dpi=80)
+    drawn = axes.tripcolor(mesh2, values, shading="gouraud", cmap="viridis")
+    figure.colorbar(drawn, ax=axes, label=label)
+    axes.set_aspect("equal" if max(width, height) < 12 * min(width, height) else "auto")
+    axes.set_xlabel("x, m")
+    axes.set_ylabel("y, m")
+    figure.tight_layout()
+    figure.savefig(os.path.join(FOLDER, name + ".png"))
+    plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("word", nargs="?", default="")
+    parser.add_argument("--keep", action="store_true")
+    arguments = parser.parse_args()
+    os.makedirs(FOLDER, exist_ok=True)
+    cases = sorted(glob.glob(os.path.join(ROOT, "inputs", "fluid", "*.yaml")))
+    failed = []
+    for path in cases:
+        name = os.path.splitext(os.path.basename(path))[0]
+        if arguments.word not in name:
+            continue
+        output = os.path.join(ROOT, "output", "pictures", name)
+        if not (arguments.keep and glob.glob(os.path.join(output, "fluid", "[0-9]*.h5"))):
+            subprocess.run([os.path.join(ROOT, "build", "silt"), path, "-output_directory", output], cwd=ROOT, stdout=subprocess.DEVNULL)
+        try:
+            picture(name, name, output)
+        except (IndexError, OSError) as error:
+            failed.append(f"{name}: {error}")
+    with open(os.path.join(FOLDER, "README.md"), "w") as page:
+        page.write("# Cases of the carrier fluid\n\nMade by `scripts/fluid_pictures.py` from `inputs/fluid`; the figures they must give stand in [verification](../../verification.md).\n\n| case | question | picture |\n|---|---|---|\n")
+        for path in cases:
+            name = os.path.splitext(os.path.basename(path))[0]
+            text = open(path).read()
+            question = re.search(r"^# Question: (.*)$", text, re.M)
+            if os.path.exists(os.path.join(FOLDER, name + ".png")):
+                page.write(f"| `{name}` | {question.group(1) if question else ''} | ![]({name}.png) |\n")
+    print("\n".join(failed))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
