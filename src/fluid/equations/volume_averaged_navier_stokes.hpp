@@ -69,7 +69,7 @@ struct VolumeAveragedNavierStokes {
                        S (&galerkin)[dim], S (&particles)[dim], S (&strong)[dim]) {
     const T mass = at.alpha * k.density;
     const T pressure_factor = k.model_a ? at.alpha : at.alpha * 0.0 + 1.0;
-    const S thinning = dilation(state, at, k);
+    const S thinning = dilation(state, at);
     for (int i = 0; i < dim; ++i) {
       S acceleration = state.velocity[i] * (T{} + k.time_coefficient) + at.history[i];
       for (int j = 0; j < dim; ++j) acceleration += state.velocity[j] * state.velocity_gradient[i][j];
@@ -88,7 +88,7 @@ struct VolumeAveragedNavierStokes {
 
   /// -2/3 alpha mu div u, with div u by continuity: zero where alpha is 1, whatever the discrete velocity.
   template <class S, class T>
-  static S dilation(const FlowState<S, dim>& state, const FlowCoefficients<T, dim>& at, const FlowParameters& k) {
+  static S dilation(const FlowState<S, dim>& state, const FlowCoefficients<T, dim>& at) {
     S change = state.velocity[0] * at.grad_alpha[0] + at.alpha_rate;
     for (int i = 1; i < dim; ++i) change += state.velocity[i] * at.grad_alpha[i];
     return change * T((2.0 / 3.0) * at.viscosity);
@@ -101,7 +101,7 @@ struct VolumeAveragedNavierStokes {
     const T shear = at.alpha * at.viscosity;
     S galerkin[dim], particles[dim], strong[dim];
     momentum(state, at, k, galerkin, particles, strong);
-    const S thinning = dilation(state, at, k);
+    const S thinning = dilation(state, at);
     for (int i = 0; i < dim; ++i) {
       out.momentum[i] = k.load_as_density ? galerkin[i] + particles[i] : galerkin[i];
       for (int j = 0; j < dim; ++j)

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "fluid/volume_scale.hpp"
 
 namespace silt {
 namespace {
@@ -388,12 +387,9 @@ void PressureCorrection::solve(const Past& before, FluidStep& step, std::vector<
   step.pressure_iterations += pressure_solver_.solve(right, phi);
   if (mpi_any(!finite(phi) || !finite(solution_))) throw SolveFailure("the flow field became non-finite");
 
-  const std::vector<double> rows = pressure_solver_.fixed_rows(phi), ones(n, 1.0);
+  const std::vector<double> rows = pressure_solver_.fixed_rows(phi);
   for (int i = 0; i < n; ++i) outflow_[i] = outlet[i] >= 0 ? full_right[i] - rows[i] : 0;
-  double entering = 0;
-  for (int i = 0; i < mesh_.owned_nodes; ++i) entering += std::max(0.0, -outflow_[i]);
-  const double scale = volume_scale(inflow + mpi_sum(entering), volume_rate, mesh_.volume, bdf_dt_);
-  mass_residual_ = -(flows + mesh_.dot(ones.data(), outflow_.data(), 1) + volume_rate) / scale;
+  mass_residual_ = volume_imbalance(flows, inflow, volume_rate);
 }
 
 std::unique_ptr<Fluid> make_pressure_correction(const Mesh& mesh, Options& options, const FluidOptions& fluid,

@@ -93,6 +93,9 @@ class PressureCorrection : public Fluid {
   void set_pressure_gradient();
   void accept(const Past& before, double dt, std::vector<double>& phi, const std::vector<double>& divergence);
   void check_balance(double flows, double volume_rate) const;
+  /// Outflow less what alpha makes room for, relative to volume_scale(); `prescribed` at the boundaries with a given
+  /// flow.
+  double volume_imbalance(double prescribed, double inflow, double volume_rate) const;
   FluidStep report(double dt) const;
   Vec3 boundary_reactions(std::vector<BoundaryFlow>& flows) const;
 

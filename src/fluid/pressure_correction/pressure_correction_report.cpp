@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "fluid/pressure_correction/pressure_correction.hpp"
+#include "fluid/volume_scale.hpp"
 
 namespace silt {
 
@@ -83,6 +84,16 @@ FluidStep PressureCorrection::report(double dt) const {
   step.momentum = vec3(momentum.data());
   step.courant = courant_rate() * dt;
   return step;
+}
+
+double PressureCorrection::volume_imbalance(double prescribed, double inflow, double volume_rate) const {
+  double open = 0, entering = 0;
+  for (int i = 0; i < mesh_.owned_nodes; ++i) {
+    open += outflow_[i];
+    entering += std::max(0.0, -outflow_[i]);
+  }
+  const double scale = volume_scale(inflow + mpi_sum(entering), volume_rate, mesh_.volume, bdf_dt_);
+  return -(prescribed + mpi_sum(open) + volume_rate) / scale;
 }
 
 }  // namespace silt
