@@ -88,7 +88,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A heavy sphere sinks through its film to a plate exponentially", "[particles]") {
+TEST_CASE("A heavy sphere sinks through its film to a plate exponentially", "[particles][slow]") {
   // Without inertia dh/dt = -W h/(6 pi mu R^2).
   BoxCase setup;
   setup.box(Vec3(-5e-3, -5e-3, 0), Vec3(5e-3, 5e-3, 10e-3));
