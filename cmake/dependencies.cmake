@@ -14,3 +14,7 @@ target_link_libraries(silt_dependencies INTERFACE MPI::MPI_CXX PkgConfig::PETSC 
 # The C++ bindings of MPI are gone from the standard; their header only slows compilation.
 target_compile_definitions(silt_dependencies INTERFACE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX
                            EIGEN_MAX_STATIC_ALIGN_BYTES=32)
+
+# Headers of others that most units include. Own headers are not among them: each stays complete in itself.
+set(SILT_PRECOMPILED <petsc.h> <Eigen/Dense> <fmt/format.h> <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map>
+                     <memory> <numbers> <optional> <span> <string> <vector>)

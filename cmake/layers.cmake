@@ -1,3 +1,16 @@
+# silt_precompile(TARGET OWNER HEADERS...): OWNER precompiles the headers, every other target uses what it made.
+function(silt_precompile target owner)
+  if(NOT SILT_PRECOMPILE)
+    return()
+  endif()
+  if(${target} STREQUAL ${owner})
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  else()
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  endif()
+  target_compile_options(${target} PRIVATE -fpch-preprocess) # ccache sees what was precompiled
+endfunction()
+
 add_library(silt_flags INTERFACE)
 target_compile_options(silt_flags INTERFACE -Wall -Wextra -Wshadow -Wpedantic -fno-math-errno -Wno-psabi
                        $<$<CONFIG:Release>:-O3> $<$<BOOL:${SILT_WERROR}>:-Werror>)
@@ -26,7 +39,11 @@ function(silt_layer name)
   foreach(used ${ARGN})
     target_link_libraries(silt_${name} PUBLIC silt_${used})
   endforeach()
+  silt_precompile(silt_${name} silt_base ${SILT_PRECOMPILED})
   foreach(source ${sources})
+    if(source MATCHES "_avx(2|512)\\.cpp$") # another instruction set: a header precompiled without it does not fit
+      set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    endif()
     if(source MATCHES "_avx2\\.cpp$")
       set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-march=x86-64-v3")
     elseif(source MATCHES "_avx512\\.cpp$")

@@ -16,8 +16,15 @@ root = pathlib.Path(__file__).resolve().parent.parent
 
 
 def commands(build):
-    """The compile command of every file, as words."""
+    """The compile command of every file, as words, without the compiler's precompiled headers; BUILD/lint has them for clang-tidy."""
     entries = json.loads((build / "compile_commands.json").read_text())
+    for entry in entries:
+        words = shlex.split(entry["command"])
+        for k in [k for k, word in enumerate(words) if word == "-include" and "cmake_pch" in words[k + 1]]:
+            words[k : k + 2] = []
+        entry["command"] = shlex.join(word for word in words if word not in ("-Winvalid-pch", "-fpch-preprocess"))
+    (build / "lint").mkdir(exist_ok=True)
+    (build / "lint" / "compile_commands.json").write_text(json.dumps(entries))
     return {pathlib.Path(entry["file"]): shlex.split(entry["command"]) for entry in entries}
 
 
@@ -43,7 +50,7 @@ def check(build, file, words, common):
     now = key(words, common)
     if stamp.exists() and stamp.read_text() == now:
         return True, True, ""
-    run = subprocess.run(["clang-tidy", "--quiet", "-p", str(build), str(file)], capture_output=True, text=True)
+    run = subprocess.run(["clang-tidy", "--quiet", "-p", str(build / "lint"), str(file)], capture_output=True, text=True)
     if run.returncode == 0:
         stamp.write_text(now)
         return False, True, ""
@@ -53,7 +60,6 @@ def check(build, file, words, common):
 
 def main():
     build, cores = pathlib.Path(sys.argv[1]), int(sys.argv[2])
-    (build / "lint").mkdir(exist_ok=True)
     known = commands(build)
     if len(sys.argv) > 3:
         files = [pathlib.Path(name).resolve() for name in sys.argv[3:]]

@@ -20,7 +20,7 @@ ExactSolution::ExactSolution(const Mesh& mesh, Options& options, const Fluid* fl
   }
   if (!given.temperature.empty()) {
     temperature_.emplace("exact_temperature", given.temperature);
-    columns_.push_back("temperature_error");
+    columns_.emplace_back("temperature_error");
   }
   if (columns_.empty()) return;
   if (!fluid) throw UserError("-exact_... needs a fluid (-fluid_type)");
