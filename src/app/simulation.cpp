@@ -134,7 +134,9 @@ std::string Simulation::description() const {
                               mesh_->total_nodes, mpi_size(), mpi_size() > 1 ? "s" : ""));
   if (fluid_)
     lines.push_back(fmt::format("fluid      {}; {} fluid unknowns", fluid_->description(), fluid_->unknowns()));
-  if (particles_)
+  if (particles_ && particles_->total() == 0)
+    lines.push_back("particles  none yet; their step is found when the first one comes");
+  else if (particles_)
     lines.push_back(fmt::format("particles  {}; step {:.3g} s ({})", particles_->total(), particles_->time_step(),
                                 particles_->time_step_reason()));
   if (particles_) {

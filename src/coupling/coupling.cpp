@@ -337,9 +337,9 @@ void Coupling::after_fluid(double dt) {
 
 std::string Coupling::description() const {
   const std::string law = std::visit([](const auto& chosen) { return std::string(chosen.name); }, drag_);
-  const std::string width = options_.filter_length
-                                ? fmt::format("length {:.4g} m", *options_.filter_length)
-                                : fmt::format("two diameters ({:.4g} m), at least two cells", 2 * diameter_);
+  const std::string width = options_.filter_length ? fmt::format("length {:.4g} m", *options_.filter_length)
+                            : diameter_ > 0 ? fmt::format("two diameters ({:.4g} m), at least two cells", 2 * diameter_)
+                                            : std::string("two diameters of the largest particle, at least two cells");
   return fmt::format("drag {}{}{}{}{}, model {}, filter {} in {} passes", law, forces_->description(),
                      thermophoresis_ ? ", thermophoresis " + thermophoresis_->name() : "",
                      dispersion_ ? ", dispersion " + dispersion_->name() : "",

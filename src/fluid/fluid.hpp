@@ -36,7 +36,7 @@ struct FluidStep {
   int velocity_iterations = 0, pressure_iterations = 0, newton_iterations = 0, energy_iterations = 0,
       turbulence_iterations = 0;
   double courant = 0;            ///< largest |u| dt / h
-  double mass_residual = 0;      ///< inflow - outflow - d/dt int alpha, relative to volume_scale() (volume_scale.hpp)
+  double mass_residual = 0;      ///< inflow - outflow - d/dt int alpha, relative to VolumeScale
   Vec3 momentum = Vec3::Zero();  ///< kg m/s, int alpha rho u at the end of the step
   Vec3 boundary_force =
       Vec3::Zero();  ///< N, pressure, viscous and convective momentum flux through the boundary (into the fluid)

@@ -10,6 +10,7 @@
 #include "fluid/fluid_options.hpp"
 #include "fluid/newton_solver.hpp"
 #include "fluid/turbulence/turbulence.hpp"
+#include "fluid/volume_scale.hpp"
 
 namespace silt {
 
@@ -81,7 +82,7 @@ class Monolithic final : public Fluid {
   void find_change(const std::vector<double>& before);
   void find_pressure_gradient();
   void remove_mean_pressure();
-  FluidStep report(double dt) const;
+  FluidStep report(double dt);
   Turbulence::Flow turbulent_flow() const;
 
   const Mesh& mesh_;
@@ -93,6 +94,7 @@ class Monolithic final : public Fluid {
   std::unique_ptr<Turbulence> turbulence_;
   std::vector<double> density_field_, viscosity_field_;  ///< [nodes], uniform, for the turbulence
   std::unique_ptr<Drive> drive_;
+  VolumeScale volume_scale_;
   StepFields fields_;
   Bdf bdf_{};
   int order_;

@@ -5,7 +5,6 @@
 #include "fluid/assembly/flow_table.hpp"
 #include "fluid/monolithic.hpp"
 #include "fluid/space/quadratic_element.hpp"
-#include "fluid/volume_scale.hpp"
 
 namespace silt {
 
@@ -54,21 +53,24 @@ std::vector<BoundaryFlow> Monolithic::boundary_flow() const {
   return result;
 }
 
-FluidStep Monolithic::report(double dt) const {
+FluidStep Monolithic::report(double dt) {
   FluidStep step;
   step.courant = courant_rate() * dt;
   const std::vector<FacetIntegrals> integrals = system_.boundary_integrals(fields_, unknown_);
   const std::vector<BoundaryFlow> flows = boundary_flow();
-  double sum = 0, inflow = 0, stored = 0;
+  double sum = 0, inflow = 0, stored = 0, speed = 0;
   for (size_t b = 0; b < flows.size(); ++b) {
     sum += flows[b].volume_flow;
     inflow += std::max(0.0, -flows[b].volume_flow);
     step.boundary_force -= flows[b].force + integrals[b].convection;
   }
-  for (int i = 0; i < mesh_.owned_nodes; ++i) stored += system_.lumped_mass()[i] * fields_.alpha_rate[i];
+  for (int i = 0; i < mesh_.owned_nodes; ++i) {
+    stored += system_.lumped_mass()[i] * fields_.alpha_rate[i];
+    speed += system_.lumped_mass()[i] / mesh_.volume * vec3(&velocity_[3 * i]).norm();
+  }
   stored = mpi_sum(stored);
-  step.mass_residual = -(sum + stored) / volume_scale(inflow, stored, mesh_.volume, dt);
-
+  step.mass_residual =
+      -(sum + stored) / volume_scale_.next(inflow, stored, mpi_sum(speed), mesh_.volume, mesh_.dimension, dt);
   step.momentum = density_ * total_flux();
   if (drive_) {  // what the mean pressure does to both phases; the particles' share is in their exchange
     step.drive_gradient = drive_gradient_;

@@ -171,7 +171,7 @@ void Engine::choose_step() {
 void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   ++rebuilds_;
   if (within_step) adapt_skin();
-  if (fluid_) collect_fluid();
+  if (fluid_ && within_step) collect_fluid();  // between steps all is collected, and new ones have no drag yet
   std::string fast;
   if (within_step)
     for (int p = 0; p < store.owned && fast.empty(); ++p)

@@ -315,6 +315,26 @@ TEST_CASE("the monolithic scheme gives the turbulent channel of the pressure cor
   for (int k = 0; k < 4; ++k) CHECK(whole[k] == Approx(split[k]).epsilon(2e-3));
 }
 
+TEMPLATE_TEST_CASE("an inlet that is still shut leaves the turbulence to itself", "[fluid][turbulence]", SstKOmega,
+                   RealizableKEpsilon) {
+  const bool omega = std::is_same_v<TestType, SstKOmega>;
+  Given given("quadrilateral", 6,
+              {{"fluid_turbulence", omega ? "sst_k_omega" : "realizable_k_epsilon"},
+               {"fluid_initial_turbulent_energy", "1e-4"},
+               {"boundary_y_min_type", "slip"},
+               {"boundary_y_max_type", "slip"},
+               {"boundary_x_max_type", "pressure"},
+               {"boundary_x_min_turbulence_intensity", "0.05"},
+               {"boundary_x_min_turbulence_length", "0.1"}},
+              1000, 1e-3);
+  given.turbulence->start(given.flow());
+  for (int step = 0; step < 50; ++step) given.advance(0.1);
+  for (const double ratio : given.turbulence->eddy_viscosity()) {
+    CHECK(ratio / 1e-3 < 10 * (omega ? 1 : 1 / (4.04 * 0.09)));  // it decays from 10 (C_mu 1/A0 without shear)
+    CHECK(ratio / 1e-3 > 0.1);
+  }
+}
+
 TEST_CASE("turbulence of an inflow is asked for and may not be given twice or on a wall", "[fluid][turbulence]") {
   const std::vector<std::pair<std::string, std::string>> base = {
       {"fluid_turbulence", "sst_k_omega"},   {"fluid_initial_turbulent_energy", "1"},
@@ -339,5 +359,7 @@ TEST_CASE("turbulence of an inflow is asked for and may not be given twice or on
                       {"boundary_x_min_turbulence_length", "0.1"},
                       {"boundary_y_min_turbulence_length", "0.1"}}),
              Contains("through a wall"));
+  CHECK_THAT(message({{"boundary_x_min_turbulence_intensity", "0"}, {"boundary_x_min_turbulence_length", "0.1"}}),
+             Contains("turbulence_intensity: it must be above 0"));
   CHECK(message({{"boundary_x_min_turbulence_intensity", "0.05"}, {"boundary_x_min_turbulence_length", "0.1"}}) == "");
 }

@@ -85,6 +85,28 @@ TEST_CASE("A batch comes at its instant, whole and without overlaps, and no more
   CHECK(box.particles.total() == 120);
 }
 
+TEST_CASE("Particles that come between steps have felt no drag of steps before them", "[insertion][mpi]") {
+  BoxRun box(vessel({{"insertion_a_type", "stream"},
+                     {"insertion_a_diameter", "2e-3"},
+                     {"insertion_a_number_rate", "2000"},
+                     {"insertion_a_interval", "0.05"},
+                     {"insertion_a_lower", "0, 0, 0.04"},
+                     {"insertion_a_upper", "0.06, 0.06, 0.06"}}));
+  constexpr double exchange = 1e-6;
+  for (int batch = 0; batch < 6; ++batch) {  // the store outgrows its arrays several times
+    box.particles.supply(0.05 * batch + 0.045, 0.01);
+    for (int p = 0; p < box.particles.owned(); ++p) box.particles.fluid_action(p) = FluidAction{.exchange = exchange};
+    const Vec3 before = box.particles.momentum();
+    box.particles.take_impulses();
+    box.particles.advance(0.05 * batch + 0.045, 0.01);
+    const auto in = box.particles.take_impulses();
+    const Vec3 sum = in.gravity + in.walls + in.drag;
+    CHECK((box.particles.momentum() - before - sum).norm() < 1e-12 * in.gravity.norm());
+    CHECK(in.drag[2] > 0);  // they fall
+  }
+  CHECK(box.particles.total() == 600);
+}
+
 TEST_CASE("A removal box takes out those in it, which are listed and counted", "[insertion][mpi]") {
   BoxRun box(vessel({{"insertion_a_diameter", "2e-3"},
                      {"insertion_a_count", "500"},

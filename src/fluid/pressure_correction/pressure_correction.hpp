@@ -14,6 +14,7 @@
 #include "fluid/pressure_correction/pressure_solver.hpp"
 #include "fluid/pressure_correction/velocity_solver.hpp"
 #include "fluid/turbulence/turbulence.hpp"
+#include "fluid/volume_scale.hpp"
 
 namespace silt {
 
@@ -93,9 +94,9 @@ class PressureCorrection : public Fluid {
   void set_pressure_gradient();
   void accept(const Past& before, double dt, std::vector<double>& phi, const std::vector<double>& divergence);
   void check_balance(double flows, double volume_rate) const;
-  /// Outflow less what alpha makes room for, relative to volume_scale(); `prescribed` at the boundaries with a given
+  /// Outflow less what alpha makes room for, relative to VolumeScale; `prescribed` at the boundaries with a given
   /// flow.
-  double volume_imbalance(double prescribed, double inflow, double volume_rate) const;
+  double volume_imbalance(double prescribed, double inflow, double volume_rate);
   FluidStep report(double dt) const;
   Vec3 boundary_reactions(std::vector<BoundaryFlow>& flows) const;
 
@@ -128,6 +129,7 @@ class PressureCorrection : public Fluid {
   bool porous_ = false, renew_ = true;
   Bdf bdf_{};
   double bdf_dt_ = 0, mass_residual_ = 0;
+  VolumeScale volume_scale_;
   double matrix_rate_ = 0;  ///< gamma/dt of the assembled pressure matrix
   int matrix_age_ = 0;
   std::vector<double> convecting_, history_, body_force_, weight_, load_per_drag_, drag_now_, right_, solution_, flux_,

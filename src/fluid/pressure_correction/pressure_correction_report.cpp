@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "fluid/pressure_correction/pressure_correction.hpp"
-#include "fluid/volume_scale.hpp"
 
 namespace silt {
 
@@ -86,13 +85,15 @@ FluidStep PressureCorrection::report(double dt) const {
   return step;
 }
 
-double PressureCorrection::volume_imbalance(double prescribed, double inflow, double volume_rate) const {
-  double open = 0, entering = 0;
+double PressureCorrection::volume_imbalance(double prescribed, double inflow, double volume_rate) {
+  double open = 0, entering = 0, speed = 0;
   for (int i = 0; i < mesh_.owned_nodes; ++i) {
     open += outflow_[i];
     entering += std::max(0.0, -outflow_[i]);
+    speed += mass_[i] / mesh_.volume * vec3(&velocity_[3 * i]).norm();
   }
-  const double scale = volume_scale(inflow + mpi_sum(entering), volume_rate, mesh_.volume, bdf_dt_);
+  const double scale = volume_scale_.next(inflow + mpi_sum(entering), volume_rate, mpi_sum(speed), mesh_.volume,
+                                          mesh_.dimension, bdf_dt_);
   return -(prescribed + mpi_sum(open) + volume_rate) / scale;
 }
 

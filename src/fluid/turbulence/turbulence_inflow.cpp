@@ -34,7 +34,10 @@ TurbulenceInflow::TurbulenceInflow(const Mesh& mesh, Options& options, const Bou
     c.energy = std::make_unique<Expression>(prefix + "_energy", read.energy);
     c.length = std::make_unique<Expression>(prefix + "_length", read.length);
     c.viscosity_ratio = std::make_unique<Expression>(prefix + "_viscosity_ratio", read.viscosity_ratio);
-    for (const auto& [name, expression] : {std::pair{"length", &c.length}, {"viscosity_ratio", &c.viscosity_ratio}})
+    for (const auto& [name, expression] : {std::pair{"length", &c.length},
+                                           {"viscosity_ratio", &c.viscosity_ratio},
+                                           {"intensity", &c.intensity},
+                                           {"energy", &c.energy}})
       if (options.given(prefix + "_" + name) && (*expression)->constant() && !((**expression)(Vec3::Zero(), 0) > 0))
         throw UserError(fmt::format("option -{}_{}: it must be above 0", prefix, name));
     conditions_.push_back(std::move(c));

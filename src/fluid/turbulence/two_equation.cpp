@@ -190,9 +190,11 @@ std::vector<char> TwoEquation<Model>::impose(const Flow& flow, double t, State& 
       fixed[i] = resolved_;
       if (resolved_) state.k[i] = 0;
     } else if (b >= 0 && !boundaries_.open(b) && boundaries_.type(b) != BoundaryType::slip && inflow_.given(b)) {
+      const double k = inflow_.energy(b, vec3(&mesh_.node_coordinates[at]), t, vec3(&flow.velocity[at]).norm());
+      if (!(k > 0)) continue;  // nothing enters yet; k = 0 would leave the scale of its eddies undefined
       fixed[i] = 2;
-      state.k[i] = inflow_.energy(b, vec3(&mesh_.node_coordinates[at]), t, vec3(&flow.velocity[at]).norm());
-      state.second[i] = inflow_second(b, flow, i, t, state.k[i]);
+      state.k[i] = k;
+      state.second[i] = inflow_second(b, flow, i, t, k);
     }
   }
   return fixed;
