@@ -23,6 +23,9 @@ import matplotlib.tri as tri  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FOLDER = os.path.join(ROOT, "docs", "gallery", "fluid")
+# What of a mesh is worth seeing, where that is not all of it: heights, m.
+HEIGHTS = {"flat_plate": (0, 0.05), "flat_plate_fine": (0, 0.05)}
+THERMAL = ("natural_convection", "heated_couette")
 
 
 def triangles(cells):
@@ -51,7 +54,7 @@ def picture(name, title, output):
         label, values = "speed, m/s", speed
         if "mach" in fields:
             label, values = "Mach number", fields["mach"][:].ravel()
-        elif "natural_convection" in name:
+        elif name.startswith(THERMAL):
             label, values = "temperature, K", fields["temperature"][:].ravel()
     if cells.shape[1] == 8 or numpy.ptp(points[:, 2]) > 0:
         x, y, values = middle_plane(points, cells, values)
@@ -59,11 +62,16 @@ def picture(name, title, output):
     else:
         mesh2 = tri.Triangulation(points[:, 0], points[:, 1], triangles(cells))
     width, height = numpy.ptp(mesh2.x), numpy.ptp(mesh2.y)
-    size = (4.8, min(4.2, max(1.5, 4.0 * height / width + 0.8)))
+    size = (4.8, 3.0 if name in HEIGHTS else min(4.2, max(1.5, 4.0 * height / width + 0.8)))
     figure, axes = plt.subplots(figsize=size, dpi=80)
-    drawn = axes.tripcolor(mesh2, values, shading="gouraud", cmap="viridis")
+    lowest, highest = values.min(), numpy.percentile(values, 95 if name in HEIGHTS else 99.9)  # singular corners have no end
+    if highest - lowest < 1e-3 * abs(highest):  # uniform: no colours for rounding errors
+        lowest, highest = 0, 1.5 * highest
+    drawn = axes.tripcolor(mesh2, values, shading="gouraud", cmap="viridis", vmin=lowest, vmax=highest)
     figure.colorbar(drawn, ax=axes, label=label)
-    axes.set_aspect("equal" if max(width, height) < 12 * min(width, height) else "auto")
+    axes.set_aspect("equal" if max(width, height) < 12 * min(width, height) and height < 2 * width and name not in HEIGHTS else "auto")
+    if name in HEIGHTS:
+        axes.set_ylim(*HEIGHTS[name])
     axes.set_xlabel("x, m")
     axes.set_ylabel("y, m")
     figure.tight_layout()
@@ -95,9 +103,9 @@ def main():
         for path in cases:
             name = os.path.splitext(os.path.basename(path))[0]
             text = open(path).read()
-            question = re.search(r"^# Question: (.*)$", text, re.M)
+            question = re.search(r"^# Question: ([^?]*\?)", text, re.M)
             if os.path.exists(os.path.join(FOLDER, name + ".png")):
-                page.write(f"| `{name}` | {question.group(1) if question else ''} | ![]({name}.png) |\n")
+                page.write(f"| `{name}` | {re.sub(r'[ ]*[#][ ]', ' ', question.group(1).replace(chr(10), ' ')) if question else ''} | ![]({name}.png) |\n")
     print("\n".join(failed))
     return 1 if failed else 0
 

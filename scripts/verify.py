@@ -31,6 +31,9 @@ class Case:
       # level: <options of the coarsest run>      (one line a run, each finer than the last by the factor `# refine: 2`)
     Such a case is run at every level and gives a line for each column: the order between the last two levels, which
     passes when it falls short of the expected one by no more than 0.1.
+
+    A mesh too large to be kept is made by Gmsh before the run, as the comment says:
+      # gmsh: [options of gmsh] <file>.geo <file>.msh
     """
 
     def __init__(self, path):
@@ -48,6 +51,16 @@ class Case:
         self.expects = self.expects or bool(self.orders)
         ranks = re.search(r"^#\s*ranks:\s*(\d+)\s*$", text, re.M)
         self.ranks = int(ranks.group(1)) if ranks else None
+        gmsh = re.search(r"^#\s*gmsh:(.*)$", text, re.M)
+        self.gmsh = gmsh.group(1).split() if gmsh else None
+
+    def make_mesh(self):
+        """Makes the mesh that the case asks for; raises when Gmsh does not."""
+        if not self.gmsh:
+            return
+        *options, geometry, mesh = self.gmsh
+        os.makedirs(os.path.dirname(os.path.join(ROOT, mesh)), exist_ok=True)
+        subprocess.run(["gmsh", "-v", "1", *options, "-2", "-format", "msh22", "-o", mesh, geometry], cwd=ROOT, check=True, stdin=subprocess.DEVNULL)
 
 
 def find_cases():
@@ -103,6 +116,7 @@ def run(silt, case, ranks):
     command = [silt, case.path, "-output_directory", output]
     if ranks > 1:
         command = ["mpiexec", "-n", str(ranks)] + command
+    case.make_mesh()
     started = time.time()
     done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     rows = [(case.name,) + match[1:] for match in FIGURE.findall(done.stdout)]

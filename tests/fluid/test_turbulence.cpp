@@ -241,6 +241,14 @@ TEST_CASE("decaying turbulence follows the exact power law", "[fluid][turbulence
   }
 }
 
+TEST_CASE("In the logarithmic layer realizable k-epsilon has C_mu = 0.09", "[fluid][turbulence]") {
+  // Pure shear with production in balance with dissipation: S k/epsilon = 1/sqrt(C_mu) = 10/3.
+  Mat3 shear = Mat3::Zero();
+  shear(0, 1) = 7;
+  const double k = 2, epsilon = 7 * k * 0.3;
+  CHECK(RealizableKEpsilon::coefficient(strain(shear), k, epsilon) == Approx(0.09).epsilon(1e-4));
+}
+
 TEST_CASE("Smagorinsky and WALE give the exact eddy viscosity of linear flows; WALE none in pure shear",
           "[fluid][turbulence][mpi]") {
   Mat3 shear = Mat3::Zero(), rotation = Mat3::Zero(), strained = Mat3::Zero();

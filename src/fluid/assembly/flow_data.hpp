@@ -23,15 +23,15 @@ struct FlowData {
   const double* cell_size = nullptr;       ///< [cells] m, shortest edge
   const double* eddy_viscosity = nullptr;  ///< [cells] Pa s, added to the viscosity; null: 0
   const double* state = nullptr;           ///< unknowns by FlowLayout, Cartesian components
+  const double* alpha = nullptr;           ///< [v]
   FlowLayout layout;
-  const double* alpha = nullptr;         ///< [v]
-  const double* history = nullptr;       ///< [v][3]
-  const double* velocity_old = nullptr;  ///< [v][3]
-  const double* body = nullptr;          ///< [v][3]
-  const double* alpha_rate = nullptr;    ///< [p]
-  const double* load = nullptr;          ///< [p][3] N/m3
-  const double* response = nullptr;      ///< [p] kg/(m3 s)
+  /// All that a cell loop gathers, a node's values together (one or two cache lines a node, not one an array).
+  const double* node_values = nullptr;    ///< [v][node_stride], see FlowNodes
+  const double* vertex_values = nullptr;  ///< [p][vertex_stride]
+  bool forced = false;                    ///< there is a body force
+  bool loaded = false;                    ///< there is a load or a response of particles
   FlowParameters parameters;
+  static constexpr int node_stride = 16, vertex_stride = 8;
 };
 
 /// Residuals and Jacobians of `lanes` cells at a time, for the widest vectors of this machine.

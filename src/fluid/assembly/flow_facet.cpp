@@ -1,5 +1,8 @@
 #include "fluid/assembly/flow_facet.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/dual.hpp"
 #include "fluid/space/quadratic_element.hpp"
 
@@ -69,6 +72,16 @@ FlowFacets::FlowFacets(const Mesh& mesh, int order)
       points_[f].push_back(std::move(p));
     }
   }
+  FlowData data;
+  data.coordinates = mesh.cell_coordinates.data();
+  for (size_t f = 0; f < mesh.facets.size(); ++f)
+    for (const Point& p : points_[mesh.facets[f].facet])
+      normals_.push_back(geometry(data, static_cast<int>(f), p).normal);
+}
+
+bool FlowFacets::on_facet(int facet, int a) const {
+  return std::any_of(points_[facet].begin(), points_[facet].end(),
+                     [&](const Point& p) { return std::abs(p.N[a]) > 1e-12; });
 }
 
 FlowFacets::Geometry FlowFacets::geometry(const FlowData& data, int f, const Point& point) const {
@@ -101,23 +114,28 @@ void FlowFacets::add_terms(const FlowData& data, int f, const FacetTerm& term, d
   const int* n = data.vertices + static_cast<size_t>(facet.cell) * np_;
   const FlowParameters& k = data.parameters;
   const double viscosity = k.viscosity + (data.eddy_viscosity ? data.eddy_viscosity[facet.cell] : 0);
-  for (const Point& point : points_[facet.facet]) {
-    const Geometry g = geometry(data, f, point);
+  const std::vector<Point>& points = points_[facet.facet];
+  for (size_t q = 0; q < points.size(); ++q) {
+    const Point& point = points[q];
     if (!term.pressure_boundary) {
+      const Vec3& normal = normals_[static_cast<size_t>(f) * points.size() + q];
       double flow = 0;
-      for (int b = 0; b < nv_; ++b)
+      for (int b = 0; b < nv_; ++b) {
+        if (point.N[b] == 0) continue;
         for (int j = 0; j < dim; ++j)
-          flow += point.N[b] * data.alpha[v[b]] * data.state[data.layout.velocity_stride * v[b] + j] * g.normal[j];
+          flow += point.N[b] * data.alpha[v[b]] * data.state[data.layout.velocity_stride * v[b] + j] * normal[j];
+      }
       for (int a = 0; a < np_; ++a) {
         const double test = k.continuity_scale * point.M[a];
         residual[pressure_row(a)] -= test * flow;
         if (!matrix || point.M[a] == 0) continue;
         for (int b = 0; b < nv_; ++b)
           for (int j = 0; j < dim; ++j)
-            matrix[pressure_row(a) * rows_ + velocity_row(b, j)] -= test * point.N[b] * data.alpha[v[b]] * g.normal[j];
+            matrix[pressure_row(a) * rows_ + velocity_row(b, j)] -= test * point.N[b] * data.alpha[v[b]] * normal[j];
       }
       continue;
     }
+    const Geometry g = geometry(data, f, point);
     double alpha = 0, pressure = 0, u[dim] = {}, gradient[dim][dim] = {};
     for (int b = 0; b < nv_; ++b) {
       alpha += point.N[b] * data.alpha[v[b]];

@@ -32,6 +32,8 @@ class FlowFacets {
  public:
   FlowFacets(const Mesh& mesh, int order);
   int rows() const { return rows_; }
+  /// Whether velocity node a of the cell lies on facet `facet` of the cell.
+  bool on_facet(int facet, int a) const;
   /// Adds to residual [rows] and, when not null, matrix [rows][rows] of the cell behind facet number `f` of
   /// Mesh::facets.
   void add(const FlowData& data, int f, const FacetTerm& term, double* residual, double* matrix) const;
@@ -59,6 +61,7 @@ class FlowFacets {
   const Mesh& mesh_;
   int order_, dimension_, nv_, np_, rows_;
   std::vector<std::vector<Point>> points_;  ///< [facet of the cell]
+  std::vector<Vec3> normals_;               ///< [facets][points] outward, times weight and area
 };
 
 }  // namespace silt

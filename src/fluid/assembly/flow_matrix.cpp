@@ -34,6 +34,7 @@ MatHandle FlowSystem::create_matrix() const {
   shape_as(matrix, equal_order() ? MATBAIJ : MATAIJ);
   SILT_PETSC(MatPreallocatorPreallocate(pattern, PETSC_TRUE, matrix));
   SILT_PETSC(MatSetOption(matrix, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_TRUE));
+  if (!entries_) entries_ = std::make_unique<CellEntries>(matrix, cell_points());
 
   if (boundary_.closed()) {
     VecHandle constant = create_vector();
@@ -50,6 +51,24 @@ MatHandle FlowSystem::create_matrix() const {
     SILT_PETSC(MatSetTransposeNullSpace(matrix, space));
   }
   return matrix;
+}
+
+CellEntries::Points FlowSystem::cell_points() const {
+  const int nv = space_.nodes_per_cell, np = mesh_.nodes_per_cell;
+  CellEntries::Points points;
+  points.cells = mesh_.cells;
+  points.width.assign(nv, equal_order() ? block_ : dimension_);
+  if (!equal_order()) points.width.resize(nv + np, 1);
+  points.points = static_cast<int>(points.width.size());
+  points.row.reserve(static_cast<size_t>(points.points) * mesh_.cells);
+  for (int c = 0; c < mesh_.cells; ++c) {
+    const int* v = &space_.cell_nodes[static_cast<size_t>(c) * nv];
+    for (int a = 0; a < nv; ++a) points.row.push_back(global_[velocity_place(v[a], 0)]);
+    if (equal_order()) continue;
+    const int* n = &mesh_.cell_nodes[static_cast<size_t>(c) * np];
+    for (int a = 0; a < np; ++a) points.row.push_back(global_[pressure_place(n[a])]);
+  }
+  return points;
 }
 
 PetscErrorCode FlowSystem::insert_cell(Mat matrix, int cell, const double* values) const {
@@ -99,20 +118,30 @@ PetscErrorCode FlowSystem::jacobian(const StepFields& fields, Vec x, Mat matrix)
   const size_t rows = kernel_.rows, size = rows * rows;
   std::vector<double> residual(kernel_.lanes * rows), values(kernel_.lanes * size);
   PetscCall(MatZeroEntries(matrix));
-  for (int first = 0; first < mesh_.cells; first += kernel_.lanes) {
-    const int count = std::min(kernel_.lanes, mesh_.cells - first);
-    kernel_.evaluate(d, first, count, residual.data(), values.data());
-    for (int l = 0; l < count; ++l) {
-      constrain(first + l, &values[l * size]);
-      PetscCall(insert_cell(matrix, first + l, &values[l * size]));
+  std::vector<double> elsewhere;  // cells that also have rows of other ranks
+  std::vector<int> elsewhere_cells;
+  {
+    CellEntries::Arrays arrays(matrix);
+    const auto add = [&](int cell, double* cell_values) {
+      constrain(cell, cell_values);
+      if (entries_->add(arrays, cell, cell_values)) return;
+      elsewhere_cells.push_back(cell);
+      elsewhere.insert(elsewhere.end(), cell_values, cell_values + size);
+    };
+    for (int first = 0; first < mesh_.cells; first += kernel_.lanes) {
+      const int count = std::min(kernel_.lanes, mesh_.cells - first);
+      kernel_.evaluate(d, first, count, residual.data(), values.data());
+      for (int l = 0; l < count; ++l) add(first + l, &values[l * size]);
+    }
+    for (int f = 0; f < static_cast<int>(mesh_.facets.size()); ++f) {
+      if (fixed_facet_[f]) continue;
+      std::fill_n(values.begin(), size, 0.0);
+      facets_.add(d, f, facet_term(fields, f), residual.data(), values.data());
+      add(mesh_.facets[f].cell, values.data());
     }
   }
-  for (int f = 0; f < static_cast<int>(mesh_.facets.size()); ++f) {
-    std::fill_n(values.begin(), size, 0.0);
-    facets_.add(d, f, facet_term(fields, f), residual.data(), values.data());
-    constrain(mesh_.facets[f].cell, values.data());
-    PetscCall(insert_cell(matrix, mesh_.facets[f].cell, values.data()));
-  }
+  for (size_t k = 0; k < elsewhere_cells.size(); ++k)
+    PetscCall(insert_cell(matrix, elsewhere_cells[k], &elsewhere[k * size]));
   for (int place = 0; place < layout_.size; ++place)
     if (owned_[place] && fixed_[place]) PetscCall(MatSetValue(matrix, global_[place], global_[place], 1.0, ADD_VALUES));
   if (equal_order())

@@ -62,6 +62,15 @@ void FlowSystem::number() {
   }
   for (const auto& c : constraints_.constraints())
     for (int k = 0; k < c.count; ++k) fixed_[velocity_place(c.node, k)] = 1;
+  fixed_facet_.assign(mesh_.facets.size(), 0);
+  for (size_t f = 0; f < mesh_.facets.size(); ++f) {
+    const BoundaryFacet& facet = mesh_.facets[f];
+    const int* v = &space_.cell_nodes[static_cast<size_t>(facet.cell) * space_.nodes_per_cell];
+    fixed_facet_[f] = boundary_.type(facet.boundary) != BoundaryType::pressure;
+    for (int a = 0; a < space_.nodes_per_cell; ++a)
+      if (facets_.on_facet(facet.facet, a))
+        for (int c = 0; c < d; ++c) fixed_facet_[f] &= fixed_[velocity_place(v[a], c)];
+  }
 
   SILT_PETSC(VecCreateSeq(PETSC_COMM_SELF, layout_.size, local_.out()));
   IsHandle from;
@@ -191,13 +200,9 @@ FlowData FlowSystem::data(const StepFields& fields, const double* state) const {
   d.state = state;
   d.layout = layout_;
   d.alpha = fields.alpha.data();
-  d.history = fields.history.data();
-  d.velocity_old = fields.velocity_old.data();
-  d.body = fields.body.data();
-  d.alpha_rate = fields.alpha_rate.data();
-  d.load = fields.load.data();
-  d.response = fields.response.data();
   d.parameters = fields.parameters;
+  nodes_.pack(fields, state, layout_, dimension_);
+  nodes_.give(d);
   return d;
 }
 
@@ -226,6 +231,14 @@ void FlowSystem::local_residual(const StepFields& fields, const std::vector<doub
   std::vector<double> values(static_cast<size_t>(kernel_.lanes) * rows);
   std::vector<PetscInt> places(rows);
   const auto add = [&](int cell, const double* r) {
+    if (equal_order()) {
+      const int* v = &mesh_.cell_nodes[static_cast<size_t>(cell) * mesh_.nodes_per_cell];
+      for (int a = 0; a < mesh_.nodes_per_cell; ++a) {
+        double* to = &residual[static_cast<size_t>(v[a]) * block_];
+        for (int k = 0; k < block_; ++k) to[k] += *r++;
+      }
+      return;
+    }
     cell_places(cell, places.data());
     for (int k = 0; k < rows; ++k) residual[places[k]] += r[k];
   };

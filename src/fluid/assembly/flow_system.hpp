@@ -1,8 +1,11 @@
 #pragma once
+#include <memory>
 #include <vector>
 
+#include "fluid/assembly/cell_entries.hpp"
 #include "fluid/assembly/flow_data.hpp"
 #include "fluid/assembly/flow_facet.hpp"
+#include "fluid/assembly/flow_nodes.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
 #include "fluid/space/lagrange_space.hpp"
 #include "fluid/space/velocity_constraints.hpp"
@@ -95,6 +98,7 @@ class FlowSystem {
   void cell_places(int cell, PetscInt* places) const;
   void constrain(int cell, double* matrix) const;
   PetscErrorCode insert_cell(Mat matrix, int cell, const double* values) const;
+  CellEntries::Points cell_points() const;
 
   const Mesh& mesh_;
   const BoundaryConditions& boundary_;
@@ -111,6 +115,9 @@ class FlowSystem {
   std::vector<double> cell_size_, lumped_mass_;
   double total_mass_ = 0;
   std::vector<Share> shares_;
+  std::vector<char> fixed_facet_;  ///< [facets] the velocity of all its nodes is given, so its Jacobian is zero
+  mutable FlowNodes nodes_;        ///< of the present assembly
+  mutable std::unique_ptr<CellEntries> entries_;  ///< of every matrix of create_matrix()
   Handle<VecScatter, VecScatterDestroy> scatter_;
   VecHandle local_;
 };

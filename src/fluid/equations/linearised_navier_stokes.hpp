@@ -31,20 +31,21 @@ struct LinearisedNavierStokes {
     response_galerkin = k.load_as_density ? at.response : at.response * 0.0;
     V particles[dim], galerkin[dim];
     VolumeAveragedNavierStokes<dim>::momentum(s, at, k, galerkin, particles, strong);
-    const V curl = (2.0 / 3.0) * at.viscosity;
+    const V curl = (2.0 / 3.0) * at.viscosity, curl_by_alpha = curl / at.alpha;
     for (int i = 0; i < dim; ++i) {
       velocity[i] = s.velocity[i];
       alpha_gradient[i] = at.grad_alpha[i] * at.viscosity;
       dilation_slope[i] = at.grad_alpha[i] * curl;
       for (int c = 0; c < dim; ++c) {
         galerkin_gradient[i][c] = mass * s.velocity_gradient[i][c];
-        strong_gradient[i][c] = galerkin_gradient[i][c] - curl * at.grad_alpha[c] * at.grad_alpha[i] / at.alpha;
+        strong_gradient[i][c] = galerkin_gradient[i][c] - curl_by_alpha * at.grad_alpha[c] * at.grad_alpha[i];
       }
     }
     tau_momentum = tau_pressure = bulk_factor = pspg = supg = V{};
     for (int c = 0; c < dim; ++c) convection2_velocity[c] = V{};
     if (!stabilised) return;
-    const V convection = 2.0 * mass / at.h, diffusion = 12.0 * shear / (at.h * at.h);
+    const V per_length = 1.0 / at.h;
+    const V convection = 2.0 * mass * per_length, diffusion = 12.0 * shear * (per_length * per_length);
     const V inertia = time + at.response;
     V speed2 = s.velocity[0] * s.velocity[0];
     for (int i = 1; i < dim; ++i) speed2 += s.velocity[i] * s.velocity[i];

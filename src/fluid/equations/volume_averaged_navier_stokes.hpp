@@ -69,7 +69,7 @@ struct VolumeAveragedNavierStokes {
                        S (&galerkin)[dim], S (&particles)[dim], S (&strong)[dim]) {
     const T mass = at.alpha * k.density;
     const T pressure_factor = k.model_a ? at.alpha : at.alpha * 0.0 + 1.0;
-    const S thinning = dilation(state, at);
+    const S thinning = dilation(state, at) * T(1.0 / at.alpha);
     for (int i = 0; i < dim; ++i) {
       S acceleration = state.velocity[i] * (T{} + k.time_coefficient) + at.history[i];
       for (int j = 0; j < dim; ++j) acceleration += state.velocity[j] * state.velocity_gradient[i][j];
@@ -79,7 +79,7 @@ struct VolumeAveragedNavierStokes {
       particles[i] = (state.velocity[i] - at.velocity_old[i]) * at.response - at.load[i];
       strong[i] = galerkin[i] + particles[i] +
                   (state.pressure_gradient[i] - T(T{} + k.mean_gradient[i])) * pressure_factor -
-                  thinning * T(at.grad_alpha[i] / at.alpha);
+                  thinning * at.grad_alpha[i];
       for (int j = 0; j < dim; ++j)
         strong[i] -=
             (state.velocity_gradient[i][j] + state.velocity_gradient[j][i]) * T(at.grad_alpha[j] * at.viscosity);
@@ -116,8 +116,9 @@ struct VolumeAveragedNavierStokes {
 
     S speed_squared = state.velocity[0] * state.velocity[0];
     for (int i = 1; i < dim; ++i) speed_squared += state.velocity[i] * state.velocity[i];
-    const T convection = 2.0 * mass / at.h;
-    const T diffusion = 12.0 * shear / (at.h * at.h);
+    const T per_length = 1.0 / at.h;
+    const T convection = 2.0 * mass * per_length;
+    const T diffusion = 12.0 * shear * (per_length * per_length);
     const T inertia = mass * k.time_coefficient + at.response;
     const S steady = speed_squared * T(convection * convection) + T(diffusion * diffusion);
     const T one = T{} + 1.0;

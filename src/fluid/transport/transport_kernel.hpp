@@ -1,6 +1,6 @@
 #pragma once
 // Included only by the translation units that instantiate it for one instruction set each, like flow_kernel.hpp.
-#include "fluid/assembly/flow_kernel.hpp"
+#include "fluid/assembly/flow_batch.hpp"
 #include "fluid/transport/transport_data.hpp"
 
 namespace silt {
@@ -28,9 +28,9 @@ void assemble_transport(const TransportData& d, int first, int count, double* ma
     }
   }
   V K[n][n] = {}, r[n] = {};
+  FlowPoint<E, V> at;
   for (int q = 0; q < t.points; ++q) {
-    FlowPoint<E, V> at;
-    at.map(t, q, x);
+    at.move(t, q, x);
     double carried[dim][W];
     for (int l = 0; l < W; ++l) {
       const long cell = first + (l < count ? l : count - 1);

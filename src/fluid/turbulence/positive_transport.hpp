@@ -6,9 +6,9 @@
 
 namespace silt {
 
-/// One implicit step of a quantity that must not become negative (docs/theory/turbulence.md, T20 to T25): the matrix is
-/// an M-matrix by artificial diffusion along the edges of a cell where it is needed, the right side is not negative, so
-/// neither is the solution, whatever the step. What the artificial diffusion took away is given back, limited to
+/// One implicit step of a quantity that must not become negative (docs/theory/turbulence.md, T20 and T21): the matrix
+/// is an M-matrix by artificial diffusion along the edges of a cell where it is needed, the right side is not negative,
+/// so neither is the solution, whatever the step. What the artificial diffusion took away is given back, limited to
 /// where the solution is smooth (algebraic flux correction: Kuzmin, J. Comput. Phys. 228 (2009) 2517), with the last
 /// iterate; a negative rest of it enters as a coefficient (Patankar 1980), which is zero or positive.
 class PositiveTransport {

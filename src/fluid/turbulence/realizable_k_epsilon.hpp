@@ -8,9 +8,11 @@
 namespace silt {
 
 /// Realizable k-epsilon model (Shih, Liou, Shabbir, Yang & Zhu, Computers & Fluids 24 (1995) 227;
-/// docs/theory/turbulence.md, T5 to T9).
+/// docs/theory/turbulence.md, T5 to T7).
 struct RealizableKEpsilon {
   static constexpr const char* name = "realizable_k_epsilon";
+  /// A0 = 1/C_mu - sqrt(6) cos(pi/6)/sqrt(C_mu): gives C_mu = 0.09 in the logarithmic layer, where S k/epsilon =
+  /// 1/sqrt(C_mu). (The report of 1994, NASA TM 106721, and OpenFOAM have 4.0, most other codes 4.04.)
   static constexpr double A0 = 4.04, C2 = 1.9, sigma_k = 1.0, sigma_epsilon = 1.2;
   static constexpr double C_mu = 0.09;  ///< in equilibrium: of walls and inflows
 
@@ -25,7 +27,7 @@ struct RealizableKEpsilon {
     const double epsilon = std::max(p.second, 1e-30);
     return p.density * coefficient(p.strain, p.k, epsilon) * p.k * p.k / epsilon;
   }
-  /// k: P - rho epsilon (T5); epsilon: rho C1 S epsilon - rho C2 epsilon^2/(k + sqrt(nu epsilon)) (T7).
+  /// k: P - rho epsilon (T2); epsilon: rho C1 S epsilon - rho C2 epsilon^2/(k + sqrt(nu epsilon)) (T7).
   static TurbulentTerms terms(const TurbulentPoint& p, double mu_t) {
     const double epsilon = std::max(p.second, 1e-30), k = std::max(p.k, 1e-30), rho = p.density;
     const double S = p.strain.shear, eta = S * k / epsilon, C1 = std::max(0.43, eta / (eta + 5));

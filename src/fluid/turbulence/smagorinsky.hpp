@@ -7,7 +7,7 @@
 namespace silt {
 
 /// Smagorinsky (Mon. Weather Rev. 91 (1963) 99): nu_t = l^2 sqrt(2 S_ij S_ij), l the constant times the cell's width or
-/// kappa times the wall distance, the smaller (docs/theory/turbulence.md, T19).
+/// kappa times the wall distance, the smaller (docs/theory/turbulence.md, T13).
 struct Smagorinsky {
   static constexpr const char* name = "smagorinsky";
   static constexpr bool limited_at_walls = true;

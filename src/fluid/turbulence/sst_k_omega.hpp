@@ -7,7 +7,7 @@
 namespace silt {
 
 /// Shear-stress-transport k-omega model (Menter, Kuntz & Langtry, Turbulence, Heat and Mass Transfer 4 (2003) 625;
-/// docs/theory/turbulence.md, T10 to T15).
+/// docs/theory/turbulence.md, T10 to T12).
 struct SstKOmega {
   static constexpr const char* name = "sst_k_omega";
   static constexpr double beta_star = 0.09, a1 = 0.31;
@@ -20,7 +20,7 @@ struct SstKOmega {
     const double argument = std::max(2 * std::sqrt(p.k) / (beta_star * omega * d), 500 * nu / (d * d * omega));
     return std::tanh(argument * argument);
   }
-  /// rho a1 k / max(a1 omega, S F2) (T12).
+  /// rho a1 k / max(a1 omega, S F2) (T10).
   static double eddy_viscosity(const TurbulentPoint& p) {
     const double F2 = p.distance > 0 ? second_blending(p) : 1.0;
     return p.density * a1 * p.k / std::max({a1 * p.second, p.strain.shear * F2, 1e-30});

@@ -8,7 +8,7 @@
 namespace silt {
 
 /// A model with transport equations for k and a second quantity (epsilon or omega), one after the other
-/// (docs/theory/turbulence.md, T1 to T4). Model: RealizableKEpsilon, SstKOmega.
+/// (docs/theory/turbulence.md, T1 to T3). Model: RealizableKEpsilon, SstKOmega.
 template <class Model>
 class TwoEquation : public Turbulence {
  public:

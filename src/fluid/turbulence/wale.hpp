@@ -8,7 +8,7 @@ namespace silt {
 
 /// Wall-adapting local eddy viscosity (Nicoud & Ducros, Flow, Turbulence and Combustion 62 (1999) 183): nu_t = (C_w
 /// width)^2 (Sd:Sd)^(3/2)/((S:S)^(5/2) + (Sd:Sd)^(5/4)), Sd the deviatoric symmetric part of the squared velocity
-/// gradient; zero in pure shear, of order y^3 at walls (docs/theory/turbulence.md, T20).
+/// gradient; zero in pure shear, of order y^3 at walls (docs/theory/turbulence.md, T14).
 struct Wale {
   static constexpr const char* name = "wale";
   static constexpr bool limited_at_walls = false;
