@@ -50,6 +50,7 @@ const std::vector<std::string> particle_columns = {"particles",
 const std::vector<std::string> drive_columns = {"drive_pressure_gradient", "drive_velocity"};
 const std::vector<std::string> heat_columns = {"fluid_heat", "energy_iterations", "least_temperature",
                                                "mean_temperature", "largest_temperature"};
+const std::vector<std::string> gas_columns = {"first_order"};
 const std::vector<std::string> flow_columns = {"volume_flow", "mass_flow", "pressure", "force_x", "force_y", "force_z"};
 
 constexpr int height_bins = 1024;
@@ -73,12 +74,14 @@ Diagnostics::Diagnostics(const Mesh& mesh, Options& options, const Vec3& gravity
       up_(gravity.norm() > 0 ? Vec3(-gravity.normalized()) : Vec3::Unit(mesh.dimension - 1)),
       with_fluid_(fluid != nullptr),
       with_heat_(fluid && !fluid->temperature().empty()),
+      with_gas_(fluid && fluid->total_energy()),
       with_drive_(fluid && fluid->driven()),
       with_particles_(particles != nullptr),
       columns_(step_columns) {
   if (with_fluid_) append(columns_, fluid_columns);
   if (with_drive_) append(columns_, drive_columns);
   if (with_heat_) append(columns_, heat_columns);
+  if (with_gas_) append(columns_, gas_columns);
   if (particles) {
     append(columns_, particle_columns);
     const Columns& columns = particles->columns();
@@ -198,6 +201,7 @@ void Diagnostics::measure_fluid(const Moment& moment, std::vector<double>& row, 
   for (double value : {step.heat, static_cast<double>(step.energy_iterations), mpi_min(low_T), mpi_sum(mean) / sum[1],
                        mpi_max(high_T)})
     row.push_back(value);
+  if (with_gas_) row.push_back(step.first_order);
 }
 
 void Diagnostics::measure_particles(const Particles& particles, std::vector<double>& row) const {

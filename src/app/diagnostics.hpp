@@ -39,7 +39,7 @@ class Diagnostics {
   const Mesh& mesh_;
   Vec3 up_;
   double bottom_, height_;
-  bool with_fluid_, with_heat_, with_drive_, with_particles_;
+  bool with_fluid_, with_heat_, with_gas_, with_drive_, with_particles_;
   std::vector<int> carried_;  ///< columns of the particles whose means are recorded
   std::vector<std::string> columns_, boundary_columns_;
   std::vector<int> role_;            ///< of each boundary: 1 fluid is given, -1 pressure is given, 0 neither

@@ -70,6 +70,7 @@ void Progress::show(const Moment& moment) {
     text += fmt::format("  CFL {:.2f}", s.courant);
     if (s.newton_iterations) text += fmt::format("  Newton {}", s.newton_iterations);
     text += fmt::format("  it {}+{}", s.velocity_iterations, s.pressure_iterations);
+    if (s.first_order) text += "  first order";
   }
   if (moment.particles) text += fmt::format("  contacts {}", moment.particle_step.contacts);
   if (moment.ledger_residual > 0) text += fmt::format("  ledger {:.0e}", moment.ledger_residual);

@@ -60,7 +60,6 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
     throw UserError(fmt::format("option -fluid_element ({}): '{}' needs -fluid_scheme monolithic",
                                 options.origin("fluid_element"), *options.find("fluid_element")));
   if (fluid.type == "prescribed") Turbulence::refuse(mesh, options, "with -fluid_type prescribed");
-  if (compressible) Turbulence::refuse(mesh, options, "with -fluid_type compressible");
   if (compressible) {
     if (options.given("fluid_scheme") && fluid.scheme != "monolithic")
       throw UserError("-fluid_scheme pressure_correction is not available with -fluid_type compressible");
@@ -74,6 +73,7 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
     auto gas = make_compressible(mesh, options, fluid, gravity);
     gas->unknowns_ = (mesh.dimension + 2) * mesh.total_nodes;
     gas->description_ = fmt::format("compressible, ideal gas, {} Pa s, BDF{}", fluid.viscosity, fluid.order);
+    if (const Turbulence* turbulence = gas->turbulence()) gas->description_ += "; " + turbulence->name();
     return gas;
   }
   if (!(fluid.viscosity > 0))

@@ -35,6 +35,7 @@ struct ParticleLoad {
 struct FluidStep {
   int velocity_iterations = 0, pressure_iterations = 0, newton_iterations = 0, energy_iterations = 0,
       turbulence_iterations = 0;
+  bool first_order = false;      ///< compressible flow: only first-order viscosity got over the step
   double courant = 0;            ///< largest |u| dt / h
   double mass_residual = 0;      ///< inflow - outflow - d/dt int alpha, relative to VolumeScale
   Vec3 momentum = Vec3::Zero();  ///< kg m/s, int alpha rho u at the end of the step

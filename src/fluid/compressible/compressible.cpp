@@ -60,7 +60,9 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
       thermal_(mesh, options, boundaries_),
       system_(mesh, boundaries_, thermal_),
       newton_(system_),
+      turbulence_(Turbulence::create(mesh, options, boundaries_, options_.symmetry == "axisymmetric")),
       cell_size_(shortest_edges(mesh)) {
+  if (turbulence_ && fluid.viscosity == 0) throw UserError("-fluid_turbulence needs -fluid_viscosity above 0");
   viscosity_ = fluid.viscosity;
   model_a_ = true;
   reduced_pressure_ = false;
@@ -100,10 +102,13 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
     state_[i * m + m - 1] = temperature_[i] / T0_;
   }
   unknown_ = system_.create_vector();
-  prepare(0, 0);
+  prepare(0, 0, 1);
   system_.freeze(step_, state_, rate_);
   conserved_ = old_conserved_ = system_.conserved(step_, state_);
   from_state();
+  if (!turbulence_) return;
+  turbulence_->start(turbulent_flow());
+  take_eddy_viscosity();
 }
 
 /// Units of the order of the initial state, so that the rows and the unknowns have comparable sizes.
@@ -164,7 +169,7 @@ void Compressible::set_outside(double time) {
   }
 }
 
-void Compressible::prepare(double time, double dt) {
+void Compressible::prepare(double time, double dt, int order) {
   const size_t n = mesh_.nodes, m = system_.size();
   boundaries_.evaluate(time + dt, load_.void_fraction.data());
   set_outside(time + dt);
@@ -200,7 +205,9 @@ void Compressible::prepare(double time, double dt) {
       step_.source[i * m + m - 1] = energy / (p0_ * u0_);
     }
   }
-  const double steps = mpi_max(n > 0 ? past_[0] : 0.0), last = mpi_max(n > 0 ? past_[1] : 0.0);
+  if (turbulence_ && dt > 0 && !turbulence_->exchange().empty())
+    for (size_t i = 0; i < n; ++i) step_.force[i * m + m - 1] -= turbulence_->exchange()[i] / (p0_ * u0_);
+  const double steps = mpi_max(n > 0 ? past_[0] : 0.0);
   if (steps == 0 && dt > 0) {  // what there is at the start leaves room for the particles that are there
     for (size_t i = 0; i < n; ++i) step_.alpha[i] -= dt * load_.void_fraction_rate[i];
     conserved_ = system_.conserved(step_, state_);
@@ -211,13 +218,18 @@ void Compressible::prepare(double time, double dt) {
   step_.known.assign(n * m, 0.0);
   step_.rate = 0;
   if (dt <= 0) return;
-  // An impulsive start among particles keeps its momentum and energy with three BDF1 steps (coupling.md).
-  const bool laden = mpi_max(n > 0 ? *std::max_element(load_.response.begin(), load_.response.end()) : 0.0) > 0;
-  const bool second = order_ == 2 && steps >= (laden ? 3 : 1);
-  const Bdf bdf = second ? Bdf::second(dt * u0_, last * u0_) : Bdf::first(dt * u0_);
-  step_.rate = bdf.c0;
+  const Bdf bdf = difference(dt, order);
+  step_.rate = bdf.c0 / u0_;
   for (size_t k = 0; k < n * m; ++k)
-    step_.known[k] = bdf.c2 * (second ? old_conserved_[k] : 0.0) - bdf.c1 * conserved_[k];
+    step_.known[k] = ((bdf.c2 != 0 ? bdf.c2 * old_conserved_[k] : 0.0) - bdf.c1 * conserved_[k]) / u0_;
+}
+
+/// An impulsive start among particles keeps its momentum and energy with three BDF1 steps (coupling.md).
+Bdf Compressible::difference(double dt, int order) const {
+  const bool nodes = !past_.empty();
+  const double steps = mpi_max(nodes ? past_[0] : 0.0), last = mpi_max(nodes ? past_[1] : 0.0);
+  const bool laden = mpi_max(nodes ? *std::max_element(load_.response.begin(), load_.response.end()) : 0.0) > 0;
+  return order == 2 && steps >= (laden ? 3 : 1) ? Bdf::second(dt, last) : Bdf::first(dt);
 }
 
 double Compressible::norm_scale() const {
@@ -230,31 +242,85 @@ double Compressible::norm_scale() const {
   return std::sqrt(mpi_sum(sum));
 }
 
+Turbulence::Flow Compressible::turbulent_flow() const {
+  return {velocity_, density_field_, viscosity_field_, load_.void_fraction, {}, true};
+}
+
+int Compressible::solve_turbulence(double time, double dt) {
+  const int iterations = turbulence_->solve(time, difference(dt, order_), dt, turbulent_flow());
+  turbulence_->accept();
+  take_eddy_viscosity();
+  return iterations;
+}
+
+void Compressible::take_eddy_viscosity() {
+  const size_t corners = mesh_.nodes_per_cell;
+  std::vector<double> viscosity(mesh_.cells, 0.0);
+  for (size_t c = 0; c < viscosity.size(); ++c)
+    for (size_t a = 0; a < corners; ++a)
+      viscosity[c] += viscosity_field_[mesh_.cell_nodes[corners * c + a]] / static_cast<double>(corners);
+  step_.eddy_viscosity = turbulence_->cell_eddy_viscosity();
+  step_.eddy_conductivity = turbulence_->cell_eddy_conductivity(heat_capacity_, options_.prandtl, viscosity);
+  for (double& mu : step_.eddy_viscosity) mu *= u0_ / p0_;
+  for (double& lambda : step_.eddy_conductivity) lambda *= u0_ / p0_ / options_.gas_constant;
+}
+
+/// The flow of a step. One that Newton's method cannot find (impulsive starts, sudden changes outside) is found with
+/// first-order viscosity everywhere and backward Euler; in time it is then found once more from there, with the
+/// viscosity that its own residual asks for.
+GasNewton::Result Compressible::solve_flow(double time, double dt, const std::vector<double>& before) {
+  const bool steady = options_.march == "steady";
+  rescued_ = false;
+  prepare(time, dt, order_);
+  if (steady) std::fill(rate_.begin(), rate_.end(), 0.0);
+  system_.freeze(step_, state_, rate_);
+  system_.to_vector(state_, unknown_);
+  try {
+    return newton_.solve(step_, unknown_, norm_scale());
+  } catch (const SolveFailure&) {
+  }
+  state_ = before;
+  prepare(time, dt, 1);
+  step_.frozen.viscosity = step_.frozen.first_order;
+  system_.to_vector(state_, unknown_);
+  GasNewton::Result result = newton_.solve(step_, unknown_, norm_scale());
+  result.newton += GasNewton::most_iterations;
+  rescued_ = true;
+  if (steady) return result;
+  std::vector<double> found, rate;
+  SILT_PETSC(system_.from_vector(unknown_, found));
+  rate = system_.conserved(step_, found);
+  for (size_t k = 0; k < rate.size(); ++k) rate[k] = step_.rate * rate[k] + step_.known[k];
+  system_.freeze(step_, found, rate);
+  try {
+    const GasNewton::Result sharp = newton_.solve(step_, unknown_, norm_scale());
+    result.newton += sharp.newton, result.linear += sharp.linear;
+  } catch (const SolveFailure&) {
+    system_.to_vector(found, unknown_);
+  }
+  return result;
+}
+
 FluidStep Compressible::advance(double time, double dt) {
   const std::vector<double> before = state_;
   const size_t n = mesh_.nodes, m = system_.size();
+  Turbulence::Snapshot turbulence_before;
+  if (turbulence_) turbulence_before = turbulence_->snapshot();
   GasNewton::Result result;
+  int turbulence_iterations = 0;
   try {
-    prepare(time, dt);
-    if (options_.march == "steady") std::fill(rate_.begin(), rate_.end(), 0.0);
-    system_.freeze(step_, state_, rate_);
-    system_.to_vector(state_, unknown_);
-    try {
-      result = newton_.solve(step_, unknown_, norm_scale());
-    } catch (const SolveFailure&) {
-      // Towards a steady state only the way suffers: one step with first-order viscosity gets over a violent start.
-      if (options_.march != "steady") throw;
-      step_.frozen.viscosity = step_.frozen.first_order;
-      system_.to_vector(state_, unknown_);
-      result = newton_.solve(step_, unknown_, norm_scale());
-      result.newton += GasNewton::most_iterations;
-    }
+    if (turbulence_) turbulence_iterations = solve_turbulence(time, dt);
+    result = solve_flow(time, dt, before);
     SILT_PETSC(system_.from_vector(unknown_, state_));
     bool bad = false;
     for (size_t i = 0; i < n; ++i) bad = bad || !(state_[i * m] > 0) || !(state_[i * m + m - 1] > 0);
     if (mpi_any(bad)) throw SolveFailure("pressure or temperature of the gas fell to zero");
   } catch (const SolveFailure&) {
     state_ = before;
+    if (turbulence_) {
+      turbulence_->restore(turbulence_before);
+      take_eddy_viscosity();
+    }
     throw;
   }
   last_newton_ = result.newton;
@@ -272,6 +338,8 @@ FluidStep Compressible::advance(double time, double dt) {
   FluidStep step = report();
   step.courant = courant_rate() * dt;
   step.newton_iterations = result.newton;
+  step.turbulence_iterations = turbulence_iterations;
+  step.first_order = rescued_;
   step.velocity_iterations = step.pressure_iterations = result.linear;
   return step;
 }

@@ -10,6 +10,7 @@
 #include "fluid/fluid.hpp"
 #include "fluid/fluid_options.hpp"
 #include "fluid/pressure_correction/bdf.hpp"
+#include "fluid/turbulence/turbulence.hpp"
 
 namespace silt {
 
@@ -47,6 +48,7 @@ class Compressible final : public Fluid {
   std::span<const double> temperature_change() const override { return temperature_change_; }
   Properties properties() const override { return {density_field_, viscosity_field_, sound_}; }
   bool total_energy() const override { return true; }
+  const Turbulence* turbulence() const override { return turbulence_.get(); }
   double displacement_power(double reference) const override;
   std::vector<Scalar> scalars() const override;
   std::vector<BoundaryFlow> boundary_flow() const override;
@@ -63,8 +65,15 @@ class Compressible final : public Fluid {
 
  private:
   void choose_units(const Vec3& gravity);
-  void prepare(double time, double dt);
+  Bdf difference(double dt, int order) const;
+  void prepare(double time, double dt, int order);
   void set_outside(double time);
+  Turbulence::Flow turbulent_flow() const;
+  /// k and epsilon in the flow of the step's start; what they take from its energy goes into the step. Returns the
+  /// linear iterations.
+  int solve_turbulence(double time, double dt);
+  void take_eddy_viscosity();
+  GasNewton::Result solve_flow(double time, double dt, const std::vector<double>& before);
   void from_state();
   void find_pressure_gradient();
   double norm_scale() const;
@@ -80,6 +89,7 @@ class Compressible final : public Fluid {
   GasStep step_;
   Source source_;
   double p0_ = 1, T0_ = 1, u0_ = 1;  ///< units of pressure, temperature and speed
+  std::unique_ptr<Turbulence> turbulence_;
   std::vector<double> cell_size_, mass_;
   VecHandle unknown_;
 
@@ -90,6 +100,7 @@ class Compressible final : public Fluid {
   std::vector<double> velocity_, pressure_, temperature_, density_field_, viscosity_field_, sound_, mach_;
   std::vector<double> velocity_change_, temperature_change_, pressure_gradient_;
   int last_newton_ = 0;
+  bool rescued_ = false;  ///< the last step needed first-order viscosity
 };
 
 std::unique_ptr<Fluid> make_compressible(const Mesh& mesh, Options& options, const FluidOptions& fluid,

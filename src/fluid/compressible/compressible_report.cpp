@@ -7,7 +7,9 @@
 namespace silt {
 
 std::vector<Fluid::Scalar> Compressible::scalars() const {
-  return {{"temperature", temperature_}, {"density", density_field_}, {"mach", mach_}};
+  std::vector<Scalar> result = {{"temperature", temperature_}, {"density", density_field_}, {"mach", mach_}};
+  if (turbulence_) turbulence_->add_scalars(result);
+  return result;
 }
 
 /// As in the other schemes: M_i g_i = int N_i grad p_h.
@@ -85,21 +87,33 @@ FluidStep Compressible::report() const {
     step.energy_supply -= around * p0_ * u0_ * flow.energy;
   }
   for (int i = 0; i < mesh_.dimension; ++i) step.energy_supply += step_.gravity[i] * u0_ * u0_ * step.momentum[i];
+  if (turbulence_ && !turbulence_->exchange().empty()) {
+    double taken = 0;
+    for (int i = 0; i < mesh_.owned_nodes; ++i) taken += turbulence_->exchange()[static_cast<size_t>(i)];
+    step.energy_supply -= around * mpi_sum(taken);
+  }
   step.mass_residual = -(sum + rate[0]) / (inflow > 0 ? inflow : 1.0);
   return step;
 }
 
 std::vector<Fluid::StateArray> Compressible::state() {
   const int m = system_.size();
-  return {{"gas_state", &state_, m},
-          {"gas_conserved", &conserved_, m},
-          {"gas_conserved_old", &old_conserved_, m},
-          {"gas_rate", &rate_, m},
-          {"gas_steps", &past_, 2},
-          {"velocity_change", &velocity_change_, 3},
-          {"temperature_change", &temperature_change_, 1}};
+  std::vector<StateArray> result = {{"gas_state", &state_, m},
+                                    {"gas_conserved", &conserved_, m},
+                                    {"gas_conserved_old", &old_conserved_, m},
+                                    {"gas_rate", &rate_, m},
+                                    {"gas_steps", &past_, 2},
+                                    {"velocity_change", &velocity_change_, 3},
+                                    {"temperature_change", &temperature_change_, 1}};
+  if (turbulence_) turbulence_->add_state(result);
+  return result;
 }
 
-void Compressible::restored() { from_state(); }
+void Compressible::restored() {
+  from_state();
+  if (!turbulence_) return;
+  turbulence_->restored();
+  take_eddy_viscosity();
+}
 
 }  // namespace silt

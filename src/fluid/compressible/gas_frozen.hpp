@@ -78,7 +78,8 @@ double freeze_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& t
   double squares = 0;
   for (const auto& row : g)
     for (double v : row) squares += v * v;
-  const double nu = gas.mu(mean.T) / rho * std::max({1.0, gas.gamma / gas.prandtl, 4.0 / 3});
+  const double mu = gas.mu(mean.T), conductivity = mu * gas.cp() / gas.prandtl + cell.eddy_conductivity;
+  const double nu = std::max(4.0 / 3 * (mu + cell.eddy_viscosity), conductivity / gas.cv()) / rho;
   Matrix inverse = (2 * step_rate + 4 * nu * squares) * Matrix::Identity();
   for (int a = 0; a < nodes; ++a) {
     double n[3] = {}, length = 0;

@@ -19,6 +19,8 @@ struct GasCell {
   double gravity[3] = {};
   bool axisymmetric = false;  ///< y is the distance from the axis
   bool porous = true;         ///< false: alpha is 1 everywhere and at rest
+  bool turbulent = false;
+  V eddy_viscosity{}, eddy_conductivity{};  ///< of the turbulence in the cell; C17
 };
 
 /// One quadrature point of a cell: shape gradients, volume (times radius).
@@ -119,7 +121,7 @@ template <Cell C, class V>
 void gas_cell(const GasCell<C, V>& cell, const GasLaw& gas, const FlowTable& table, const V* carried, V capturing,
               V* residual, V* matrix) {
   constexpr int dim = GasCell<C>::dim, nodes = GasCell<C>::nodes, size = dim + 2, rows = nodes * size;
-  const bool viscous = gas.viscosity > 0;
+  const bool viscous = gas.viscosity > 0 || cell.turbulent;
   const GasNodes<C, V> at(cell, gas);
   const auto P = [&](int i, int k, int l) { return carried[(i * size + k) * size + l]; };
   for (int k = 0; k < rows; ++k) residual[k] = V{};
@@ -157,7 +159,10 @@ void gas_cell(const GasCell<C, V>& cell, const GasLaw& gas, const FlowTable& tab
     // Viscous stress and heat flux; the stress tau is counted over mu.
     V mu{}, conductivity{}, stiff{}, hoop{}, tau_hoop{}, tau[dim][dim] = {}, flux[dim][size] = {};
     if (viscous) {
-      mu = alpha * gas.mu(T), conductivity = mu * (gas.cp() / gas.prandtl), stiff = alpha * gas.mu_slope(T);
+      const V molecular = gas.mu(T);
+      mu = alpha * (molecular + cell.eddy_viscosity);
+      conductivity = alpha * (molecular * (gas.cp() / gas.prandtl) + cell.eddy_conductivity);
+      stiff = alpha * gas.mu_slope(T);
       if (cell.axisymmetric) hoop = u[1] / point.radius;
       V divergence = hoop;
       for (int i = 0; i < dim; ++i) divergence += gu[i][i];

@@ -9,10 +9,11 @@ struct GasData {
   const FlowTable* table;
   GasLaw law;
   const int* cell_nodes;
-  const double* coordinates;             ///< [cells][nodes][3]
-  const double *state, *known, *source;  ///< [nodes][size]
-  const double *alpha, *alpha_rate;      ///< [nodes]
-  const double *carried, *viscosity;     ///< GasFrozen
+  const double* coordinates;                         ///< [cells][nodes][3]
+  const double *state, *known, *source;              ///< [nodes][size]
+  const double *alpha, *alpha_rate;                  ///< [nodes]
+  const double *carried, *viscosity;                 ///< GasFrozen
+  const double *eddy_viscosity, *eddy_conductivity;  ///< [cells]; null: laminar
   double rate, gravity[3];
   bool axisymmetric, porous;
 };

@@ -17,6 +17,10 @@ void evaluate_gas(const GasData& data, int first, int count, double* residual, d
     const long c = first + (l < count ? l : count - 1);
     for (int k = 0; k < each; ++k) carried[k][l] = data.carried[each * c + k];
     viscosity[l] = data.viscosity[c];
+    if (data.eddy_viscosity) {
+      cell.eddy_viscosity[l] = data.eddy_viscosity[c];
+      cell.eddy_conductivity[l] = data.eddy_conductivity[c];
+    }
     for (int a = 0; a < nodes; ++a) {
       const long i = data.cell_nodes[c * nodes + a];
       const double* s = data.state + i * size;
@@ -36,6 +40,7 @@ void evaluate_gas(const GasData& data, int first, int count, double* residual, d
   for (int d = 0; d < 3; ++d) cell.gravity[d] = data.gravity[d];
   cell.axisymmetric = data.axisymmetric;
   cell.porous = data.porous;
+  cell.turbulent = data.eddy_viscosity != nullptr;
   V R[rows], K[rows * rows];
   gas_cell<C, V>(cell, data.law, *data.table, carried, viscosity, R, matrix ? K : nullptr);
   for (int r = 0; r < rows; ++r)

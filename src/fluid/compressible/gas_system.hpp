@@ -22,10 +22,12 @@ struct GasStep {
   std::vector<double> force;         ///< [nodes][size] what acts at the nodes: momentum, and heat in the last place
   std::vector<double> response;      ///< [nodes] kg/s of the particles, on u - u^n
   std::vector<double> old_velocity;  ///< [nodes][3]
-  std::vector<double> prescribed_velocity;      ///< [nodes][3] at constrained nodes
-  std::vector<double> prescribed_temperature;   ///< [nodes] where fixed
-  std::vector<double> heat, heat_coefficient;   ///< [nodes] heat into walls' nodes: heat - coefficient T
-  std::vector<std::vector<OpenBoundary>> open;  ///< [facet][point] what stands outside; empty: a wall
+  std::vector<double> prescribed_velocity;                ///< [nodes][3] at constrained nodes
+  std::vector<double> prescribed_temperature;             ///< [nodes] where fixed
+  std::vector<double> heat, heat_coefficient;             ///< [nodes] heat into walls' nodes: heat - coefficient T
+  std::vector<std::vector<OpenBoundary>> open;            ///< [facet][point] what stands outside; empty: a wall
+  std::vector<double> eddy_viscosity, eddy_conductivity;  ///< [cells]; empty: laminar
+  double eddy(int cell) const { return eddy_viscosity.empty() ? 0.0 : eddy_viscosity[cell]; }
   GasFrozen frozen;
   CapturingFactors capturing;
 };
@@ -73,8 +75,15 @@ class GasSystem {
   template <Cell C>
   void freeze_cells(GasStep& step, const std::vector<double>& state, const std::vector<double>& rate_now) const;
   PetscErrorCode cells(const GasStep& step, const std::vector<double>& state, double* residual, Mat matrix) const;
-  template <int dim>
   PetscErrorCode facets(const GasStep& step, const std::vector<double>& state, double* residual, Mat matrix) const;
+  template <int dim>
+  PetscErrorCode facets_of(const GasStep& step, const std::vector<double>& state, double* residual, Mat matrix) const;
+  template <int dim>
+  struct FacetState;
+  template <int dim>
+  void flux_through(const GasStep& step, const FacetState<dim>& point, size_t facet, int q, double* out) const;
+  bool viscous_through(const GasStep& step, size_t facet, int q, const Vec3& normal) const;
+  void shape_at(size_t facet, int q, double* N, double (*gradient)[3]) const;
   PetscErrorCode assemble(const GasStep& step, const std::vector<double>& state, double* residual, Mat matrix) const;
   void nodes(const GasStep& step, const std::vector<double>& state, double* residual) const;
   void to_frames(double* values) const;

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
 
 #include "fluid/compressible/gas.hpp"
 
@@ -12,6 +13,13 @@ struct OpenBoundary {
   double p = 1, T = 1, u[3] = {0, 0, 0};
   double inflow = 0;             ///< mass per area and time into the domain (mass_flow)
   bool has_temperature = false;  ///< pressure: T is that of gas which enters
+
+  /// far_field: gas enters at sonic speed (nozzles) or more: nothing of the inside counts.
+  bool enters_sonic(const GasLaw& gas, const double* n, int dim) const {
+    double entering = 0;
+    for (int i = 0; i < dim; ++i) entering -= u[i] * n[i];
+    return entering > 0.999 * std::sqrt(gas.gamma * T);
+  }
 };
 
 namespace detail {
@@ -87,12 +95,8 @@ void open_flux(const GasLaw& gas, const OpenBoundary& outside, const GasState<S,
     case OpenBoundary::far_field: {
       GasState<S, dim> far;
       far.p = S(outside.p), far.T = S(outside.T);
-      double entering = 0;
-      for (int i = 0; i < dim; ++i) {
-        far.u[i] = S(outside.u[i]);
-        entering -= outside.u[i] * n[i];
-      }
-      if (entering > 0.999 * std::sqrt(g * outside.T)) {  // sonic nozzles: nothing of the inside counts
+      for (int i = 0; i < dim; ++i) far.u[i] = S(outside.u[i]);
+      if (outside.enters_sonic(gas, n, dim)) {
         at = far;
         break;
       }

@@ -30,6 +30,9 @@ std::unique_ptr<Turbulence> Turbulence::create(const Mesh& mesh, Options& option
     return std::make_unique<TwoEquation<RealizableKEpsilon>>(mesh, options, read, boundaries, axisymmetric);
   if (read.turbulence == SstKOmega::name)
     return std::make_unique<TwoEquation<SstKOmega>>(mesh, options, read, boundaries, axisymmetric);
+  if (axisymmetric && read.turbulence != "none")
+    throw UserError(fmt::format("-fluid_turbulence {} resolves eddies in space: not with -fluid_symmetry axisymmetric",
+                                read.turbulence));
   if (read.turbulence == Smagorinsky::name)
     return std::make_unique<Algebraic<Smagorinsky>>(mesh, options, read, boundaries, axisymmetric);
   if (read.turbulence == Wale::name)
@@ -60,14 +63,35 @@ std::vector<double> Turbulence::wall_distance_of(const Mesh& mesh, const Boundar
 
 std::vector<double> Turbulence::cell_eddy_conductivity(double heat_capacity, double conductivity,
                                                        double viscosity) const {
+  const double Pr = conductivity > 0 ? heat_capacity * viscosity / conductivity : infinity;
+  const std::vector<double> everywhere(cell_eddy_viscosity_.size(), viscosity);
+  return cell_eddy_conductivity(heat_capacity, Pr, everywhere);
+}
+
+std::vector<double> Turbulence::cell_eddy_conductivity(double heat_capacity, double prandtl,
+                                                       std::span<const double> viscosity) const {
   std::vector<double> result(cell_eddy_viscosity_.size());
-  const double Pr = heat_capacity * viscosity / conductivity;
   for (std::size_t c = 0; c < result.size(); ++c) {
     result[c] = heat_capacity * cell_eddy_viscosity_[c] / options_.prandtl;
-    if (const double y = wall_y_plus_[c]; y > 0 && conductivity > 0)
-      result[c] = std::max(0.0, heat_capacity * viscosity * y / wall_law::temperature(y, Pr) - conductivity);
+    if (const double y = wall_y_plus_[c]; y > 0 && prandtl < infinity)
+      result[c] = std::max(0.0, heat_capacity * viscosity[c] * (y / wall_law::temperature(y, prandtl) - 1 / prandtl));
   }
   return result;
+}
+
+Turbulence::Snapshot Turbulence::snapshot() {
+  std::vector<Fluid::StateArray> arrays;
+  add_state(arrays);
+  Snapshot kept;
+  for (const auto& array : arrays) kept.push_back(*array.values);
+  return kept;
+}
+
+void Turbulence::restore(const Snapshot& kept) {
+  std::vector<Fluid::StateArray> arrays;
+  add_state(arrays);
+  for (std::size_t k = 0; k < arrays.size(); ++k) *arrays[k].values = kept[k];
+  restored();
 }
 
 void Turbulence::add_transposed_stress(const Mesh& mesh, std::span<const double> velocity,

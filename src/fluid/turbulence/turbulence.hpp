@@ -22,6 +22,9 @@ namespace silt {
 ///     turbulence_->solve(time, bdf, dt, flow with the new velocity);               // may throw SolveFailure
 ///     turbulence_->accept();                                                       // with the rest of the step
 ///
+/// A scheme that counts its total energy solves the turbulence first, in the flow of the step's start, and takes
+/// exchange() from its energy; snapshot() and restore() undo that when the flow then fails.
+///
 /// Heat: the same with conductivity + turbulence_->cell_eddy_conductivity(...)[cell]. The momentum equation gains
 /// div(mu_t grad u^T) too where mu_t varies: add_transposed_stress(). The trace -2/3 rho k is part of the pressure.
 class Turbulence {
@@ -33,6 +36,7 @@ class Turbulence {
     std::span<const double> viscosity;      ///< [nodes] Pa s, molecular
     std::span<const double> void_fraction;  ///< [nodes]
     std::span<const double> source = {};    ///< [nodes] W, load vector: work of particles that becomes k; empty: none
+    bool compressible = false;              ///< dilatation of the flow does work on k (T26)
   };
 
   /// Reads `-fluid_turbulence...` and `-boundary_<name>_turbulence_...`; null for `none`. Collective.
@@ -56,6 +60,12 @@ class Turbulence {
   const std::vector<double>& cell_eddy_viscosity() const { return cell_eddy_viscosity_; }
   /// [cells] W/(m K), added to the conductivity; the law of the wall for temperature in its cells.
   std::vector<double> cell_eddy_conductivity(double heat_capacity, double conductivity, double viscosity) const;
+  /// The same for a viscosity [cells] that varies, at one Prandtl number of the gas.
+  std::vector<double> cell_eddy_conductivity(double heat_capacity, double prandtl,
+                                             std::span<const double> viscosity) const;
+  /// [nodes] W, load vector (around an axis per radian): what k took from the flow and the particles in the last
+  /// solve(): production less dissipation; empty for models without k, whose production is heat at once.
+  virtual std::span<const double> exchange() const { return {}; }
   /// [nodes] Pa s.
   const std::vector<double>& eddy_viscosity() const { return eddy_viscosity_; }
   /// [nodes] m2/s2 and m2/s3: k and epsilon; empty for the models that have none.
@@ -77,6 +87,9 @@ class Turbulence {
   virtual void add_state(std::vector<Fluid::StateArray>& arrays);
   /// After the arrays of add_state() were overwritten.
   virtual void restored() {}
+  using Snapshot = std::vector<std::vector<double>>;
+  Snapshot snapshot();
+  void restore(const Snapshot& kept);
   const std::string& name() const { return options_.turbulence; }
 
  protected:

@@ -77,7 +77,12 @@ auto TwoEquation<Model>::fields(const Flow& flow) const -> Fields {
   f.strain.resize(n);
   f.flux.resize(3 * n);
   for (std::size_t i = 0; i < n; ++i) {
-    f.strain[i] = strain(Eigen::Map<const Mat3>(&gradient[9 * i]).transpose());
+    Mat3 g = Eigen::Map<const Mat3>(&gradient[9 * i]).transpose();
+    if (axisymmetric_) {  // u_r/r, on the axis du_r/dr
+      const double r = mesh_.node_coordinates[3 * i + 1];
+      g(2, 2) = r > 1e-12 * mesh_.upper.y() ? flow.velocity[3 * i + 1] / r : g(1, 1);
+    }
+    f.strain[i] = strain(g);
     vec3(&f.flux[3 * i]) = flow.void_fraction[i] * flow.density[i] * vec3(&flow.velocity[3 * i]);
   }
   f.speed = layer_.speed(flow.velocity);
@@ -218,6 +223,11 @@ void TwoEquation<Model>::set_sources(const Flow& flow, const std::vector<Turbule
     };
     if (energy_source) add(energy_source(x, t), p.k, energy.production[i], energy.destruction[i]);
     if (second_source) add(second_source(x, t), p.second, second.production[i], second.destruction[i]);
+    if (flow.compressible) {  // work of the dilatation, -2/3 rho k div u
+      const double rate = 2.0 / 3 * alpha * p.density * p.strain.dilatation;
+      energy.production[i] += std::max(0.0, -rate) * p.k;
+      energy.destruction[i] += std::max(0.0, rate);
+    }
     if (!flow.source.empty()) energy.production[i] += std::max(0.0, flow.source[i]) / rule_.volume()[i];
   }
 }
@@ -256,6 +266,9 @@ int TwoEquation<Model>::solve(double time, const Bdf& bdf, double dt, const Flow
     iterations += second_transport_.solve(second, second_fixed, next_.second);
     set_viscosity(flow, f, next_);
   }
+  exchange_.resize(n);
+  for (int i = 0; i < n; ++i)
+    exchange_[i] = rule_.volume()[i] * (energy.production[i] - energy.destruction[i] * next_.k[i]);
   return iterations;
 }
 

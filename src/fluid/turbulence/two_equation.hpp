@@ -20,6 +20,7 @@ class TwoEquation : public Turbulence {
   void accept() override;
   std::span<const double> energy() const override { return k_; }
   std::span<const double> dissipation() const override { return dissipation_; }
+  std::span<const double> exchange() const override { return exchange_; }
   void add_scalars(std::vector<Fluid::Scalar>& scalars) const override;
   void add_state(std::vector<Fluid::StateArray>& arrays) override;
   void restored() override { set_dissipation(); }
@@ -67,7 +68,7 @@ class TwoEquation : public Turbulence {
   PositiveTransport k_transport_, second_transport_;
   Expression initial_energy_, initial_ratio_;
 
-  std::vector<double> k_, old_k_, second_, old_second_, dissipation_;
+  std::vector<double> k_, old_k_, second_, old_second_, dissipation_, exchange_;
   State next_;
 };
 
