@@ -82,5 +82,39 @@ with tempfile.TemporaryDirectory() as folder:
         on = run(folder, "-restart", "out/last_good.h5", "-output_directory", "on", scheme="monolithic", end=0.02)
         expect(on.returncode == 0, f"going on from the last good state: {on.stdout[-300:]}")
 
+# A gas: the jet of a sonic nozzle starts at once, its pressure rises at once, the step is 100 times too long (Courant number 140).
+JET = """\
+title: sudden jet
+mesh: {{type: box, cell: quadrilateral, lower: [0, 0, 0], upper: [4, 2, 0], cells: [32, 16]}}
+gravity: [0, 0, 0]
+time: {{end: {end}, step: {step}}}
+fluid: {{type: compressible, symmetry: axisymmetric, gas_constant: 1, viscosity: 1e-3, initial_pressure: "1", initial_temperature: "1", {more}}}
+boundary:
+  x_min: {{type: far_field, pressure: "y < 0.5 ? {pressure} : 1", velocity: "y < 0.5 ? 1.0802 : 0, 0, 0", temperature: {{value: "y < 0.5 ? 0.8333 : 1"}}{entering}}}
+  x_max: {{type: far_field, pressure: "1", temperature: {{value: "1"}}{entering}}}
+  y_max: {{type: far_field, pressure: "1", temperature: {{value: "1"}}{entering}}}
+  y_min: {{type: slip}}
+output: {{directory: out, interval: {end}}}
+"""
+laminar = dict(end=3, step=0.1, pressure="3.6", more="order: 2", entering="")
+turbulent = dict(more="turbulence: realizable_k_epsilon, initial_turbulent_energy: '1e-5'", entering=", turbulence: {energy: '1e-3', viscosity_ratio: '10'}")
+for name, change in {
+    "impulsive start": {},
+    "impulsive start, k-epsilon": turbulent,
+    "impulsive start at 16 times the pressure": dict(pressure="16"),
+    "sudden rise of the pressure": dict(pressure="(t > 1 ? 16 : 1.9)"),
+    "step 100 times too long": dict(step=10, end=40),
+}.items():
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "case.yaml"), "w") as file:
+            file.write(JET.format(**dict(laminar, **change)))
+        done = subprocess.run([SILT, "case.yaml"], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        expect(done.returncode == 0, f"gas, {name}: {done.stdout[-300:]}")
+        if done.returncode == 0:
+            table = rows(folder)
+            expect(min(float(row["least_temperature"]) for row in table) > 0, f"gas, {name}: temperature {table[-1]['least_temperature']}")
+            expect(name.endswith("epsilon") or any(float(row["first_order"]) for row in table), f"gas, {name}: first-order steps are not told")
+            expect(not float(table[-1]["first_order"]), f"gas, {name}: first-order steps do not end")
+
 print("\n".join(wrong) if wrong else "hard starts end well")
 sys.exit(1 if wrong else 0)

@@ -50,6 +50,7 @@ void GasSystem::freeze_cells(GasStep& step, const std::vector<double>& state,
 }
 
 void GasSystem::freeze(GasStep& step, const std::vector<double>& state, const std::vector<double>& rate_now) const {
+  step.frozen.lumped = false;
   switch (mesh_.cell) {
     case Cell::triangle:
       return freeze_cells<Cell::triangle>(step, state, rate_now);
@@ -82,7 +83,8 @@ PetscErrorCode GasSystem::cells(const GasStep& step, const std::vector<double>& 
                step.rate,
                {step.gravity[0], step.gravity[1], step.gravity[2]},
                step.axisymmetric,
-               false};
+               false,
+               step.frozen.lumped};
   for (int i = 0; i < mesh_.nodes && !data.porous; ++i) data.porous = step.alpha[i] != 1 || step.alpha_rate[i] != 0;
   const size_t each = static_cast<size_t>(rows) * rows;
   std::vector<double> r(static_cast<size_t>(loop_.lanes) * rows), K(matrix ? loop_.lanes * each : 0);

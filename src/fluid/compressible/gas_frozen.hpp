@@ -14,6 +14,15 @@ struct GasFrozen {
   std::vector<double> carried;  ///< [cells][dim][size][size]
   std::vector<double> viscosity;
   std::vector<double> first_order;  ///< its bound
+  bool lumped = false;              ///< mass at the nodes
+
+  /// Makes the step one of first order, whose solution has no new extrema: no streamline terms, mass at the nodes,
+  /// `factor` times the first-order viscosity everywhere.
+  void make_first_order(double factor) {
+    std::fill(carried.begin(), carried.end(), 0.0);
+    for (size_t c = 0; c < viscosity.size(); ++c) viscosity[c] = factor * first_order[c];
+    lumped = true;
+  }
 };
 
 /// Factors of the shock capturing.

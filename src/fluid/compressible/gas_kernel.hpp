@@ -20,6 +20,7 @@ struct GasCell {
   bool axisymmetric = false;  ///< y is the distance from the axis
   bool porous = true;         ///< false: alpha is 1 everywhere and at rest
   bool turbulent = false;
+  bool lumped = false;                      ///< mass at the nodes
   V eddy_viscosity{}, eddy_conductivity{};  ///< of the turbulence in the cell; C17
 };
 
@@ -183,7 +184,7 @@ void gas_cell(const GasCell<C, V>& cell, const GasLaw& gas, const FlowTable& tab
     for (int a = 0; a < nodes; ++a) {
       V* r = residual + a * size;
       for (int k = 0; k < size; ++k) {
-        V sum = M[a] * rate[k];
+        V sum = M[a] * (cell.lumped ? at.rate[a][k] : rate[k]);
         for (int i = 0; i < dim; ++i) sum += point.g[a][i] * (flux[i][k] - F[i][k] + capturing * gU[i][k]);
         for (int i = 0; i < dim; ++i)
           for (int l = 0; l < size; ++l) sum += point.g[a][i] * P(i, k, l) * R[l];
@@ -198,7 +199,10 @@ void gas_cell(const GasCell<C, V>& cell, const GasLaw& gas, const FlowTable& tab
       for (int b = 0; b < nodes; ++b) {
         V gradients{};
         for (int i = 0; i < dim; ++i) gradients += point.g[a][i] * point.g[b][i];
-        mass[a][b] += w * M[a] * M[b];
+        if (!cell.lumped)
+          mass[a][b] += w * M[a] * M[b];
+        else if (a == b)
+          mass[a][a] += w * M[a];
         spread[a][b] += w * capturing * gradients;
         for (int i = 0; i < dim; ++i) {
           ofF[a][b][i] -= w * point.g[a][i] * M[b];

@@ -15,7 +15,7 @@ struct GasData {
   const double *carried, *viscosity;                 ///< GasFrozen
   const double *eddy_viscosity, *eddy_conductivity;  ///< [cells]; null: laminar
   double rate, gravity[3];
-  bool axisymmetric, porous;
+  bool axisymmetric, porous, lumped;
 };
 
 /// Residual [lanes][rows] and, when not null, Jacobian [lanes][rows][rows] of the cells first ... first + count - 1,

@@ -41,6 +41,7 @@ void evaluate_gas(const GasData& data, int first, int count, double* residual, d
   cell.axisymmetric = data.axisymmetric;
   cell.porous = data.porous;
   cell.turbulent = data.eddy_viscosity != nullptr;
+  cell.lumped = data.lumped;
   V R[rows], K[rows * rows];
   gas_cell<C, V>(cell, data.law, *data.table, carried, viscosity, R, matrix ? K : nullptr);
   for (int r = 0; r < rows; ++r)

@@ -119,7 +119,7 @@ PetscErrorCode GasNewton::search(SNESLineSearch line, void* self) {
   PetscFunctionReturn(0);
 }
 
-GasNewton::Result GasNewton::solve(const GasStep& step, Vec x, double scale) {
+GasNewton::Result GasNewton::solve(const GasStep& step, Vec x, double scale, double accepted) {
   step_ = &step;
   norms_.clear();
   SILT_PETSC(SNESSetTolerances(snes_, 1e-11 * scale, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
@@ -136,7 +136,7 @@ GasNewton::Result GasNewton::solve(const GasStep& step, Vec x, double scale) {
   SILT_PETSC(SNESGetLinearSolveIterations(snes_, &linear));
   result.newton = static_cast<int>(newton);
   result.linear = static_cast<int>(linear);
-  const bool fell = norms_.size() > 1 && norms_.back() < 0.1 * norms_.front();
+  const bool fell = norms_.size() > 1 && norms_.back() < accepted * norms_.front();
   const bool rest = !norms_.empty() && norms_.back() < 1e-9 * scale;
   if (reason > 0 || ((reason == SNES_DIVERGED_MAX_IT || reason == SNES_DIVERGED_LINE_SEARCH) && fell) || rest)
     return result;

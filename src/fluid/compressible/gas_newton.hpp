@@ -19,9 +19,9 @@ class GasNewton {
     int newton = 0, linear = 0;
   };
   /// Solves from the guess x; `scale` is the size of the terms that balance, below 1e-11 of which the residual counts
-  /// as zero. A step that has not met the tolerance after the last iteration is accepted when its residual fell to a
-  /// tenth; throws SolveFailure otherwise. Collective.
-  Result solve(const GasStep& step, Vec x, double scale);
+  /// as zero. A step that has not met the tolerance after the last iteration is accepted when its residual fell by the
+  /// factor `accepted`; throws SolveFailure otherwise. Collective.
+  Result solve(const GasStep& step, Vec x, double scale, double accepted);
   /// Residual norms of the last solve.
   const std::vector<double>& norms() const { return norms_; }
 
