@@ -56,6 +56,8 @@ def picture(name, title, output):
             label, values = "Mach number", fields["mach"][:].ravel()
         elif name.startswith(THERMAL):
             label, values = "temperature, K", fields["temperature"][:].ravel()
+        elif name == "wall_distance":
+            label, values = "wall distance, m", fields["wall_distance"][:].ravel()
     if cells.shape[1] == 8 or numpy.ptp(points[:, 2]) > 0:
         x, y, values = middle_plane(points, cells, values)
         mesh2 = tri.Triangulation(x, y)
