@@ -229,7 +229,8 @@ void Simulation::keep_state() {
   fluid_moved_ = false;
   constexpr int worth_a_copy = 200;
   if (particles_ && !fluid_ && good_.particles && substeps_since_good_ < worth_a_copy) return;
-  if (particles_) good_.particles = particles_->snapshot();
+  good_.particles.reset();  // first the room, then the copy
+  if (particles_) good_.particles = particles_->snapshot(fluid_ != nullptr);
   good_.profiles = *profiles_;
   good_.clock = {now_.time, now_.dt, shortened_, now_.step};
   substeps_since_good_ = 0;
@@ -360,6 +361,8 @@ void Simulation::report() {
 void Simulation::finish() {
   if (checkpoint_->wanted()) write_checkpoint("checkpoint.h5");
   progress_->finish(now_);
+  if (particles_ && particles_->total() >= 1000)  // fewer have less than what arrays take at least
+    progress_->line(fmt::format("memory     particles {}", particles_->memory(good_.particles.get())));
   double total = 0;
   for (double s : seconds_) total += s;
   progress_->line(fmt::format(

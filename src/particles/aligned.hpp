@@ -11,7 +11,7 @@
 namespace silt {
 
 /// An array of plain records aligned for vector loads (64 bytes; whole 2 MB pages once it is large). Growing keeps the
-/// contents; new entries are zero.
+/// contents, by an eighth at least; new entries are zero.
 template <class T>
 class Aligned {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -38,7 +38,8 @@ class Aligned {
   void reserve(std::size_t count) {
     if (count <= capacity_) return;
     constexpr std::size_t page = std::size_t(2) << 20;
-    std::size_t bytes = (count + count / 8 + 64) * sizeof(T);
+    const std::size_t grown = capacity_ + capacity_ / 8 + 64;
+    std::size_t bytes = (count > grown ? count : grown) * sizeof(T);
     const std::size_t alignment = bytes > 2 * page ? page : 64;
     bytes = (bytes + alignment - 1) / alignment * alignment;
     void* memory = std::aligned_alloc(alignment, bytes);

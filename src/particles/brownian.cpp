@@ -22,13 +22,14 @@ double Brownian::speed(double mass) const {
   return 3 * std::sqrt(3 * boltzmann_constant * options_.temperature / mass);
 }
 
-double Brownian::act(Store& store, const Integration& step, double time) const {
+BrownianWay Brownian::act(Store& store, const Integration& step, double time) const {
   const double h = step.dt, energy = boltzmann_constant * options_.temperature;
   const auto moment = std::bit_cast<std::uint64_t>(time);
-  double largest = 0;
+  double largest = 0, longest = 0;
   for (int p = 0; p < store.owned; ++p) {
     Motion& motion = store.motion[p];
     DragStep& drag = store.drag[p];
+    double jump = 0;
     const auto id = static_cast<std::uint64_t>(store.id[p]);
     const auto deviates = [&](std::uint32_t stream) {
       return normal_deviates(philox({static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32),
@@ -52,7 +53,9 @@ double Brownian::act(Store& store, const Integration& step, double time) const {
         const double dv = kick * a[d];
         drag.impulse[3] += dv / motion.inverse_mass * (motion.velocity[d] + 0.5 * dv);
         motion.velocity[d] += dv;
-        motion.position[d] += together * a[d] + alone * b[d];
+        const double way = together * a[d] + alone * b[d];
+        motion.position[d] += way;
+        jump += way * way;
         drag.impulse[d] += dv / motion.inverse_mass;
       }
     }
@@ -62,11 +65,10 @@ double Brownian::act(Store& store, const Integration& step, double time) const {
       const auto c = deviates(2);
       for (int d = 0; d < 3; ++d) motion.spin[d] += step.turn[d] * kick * c[d];
     }
-    double square = 0;
-    for (int d = 0; d < 3; ++d) square += std::pow(motion.position[d] - store.origin[p].entry[d], 2);
-    largest = std::max(largest, square);
+    largest = std::max(largest, store.way(p));
+    longest = std::max(longest, jump);
   }
-  return largest;
+  return {largest, std::sqrt(longest)};
 }
 
 }  // namespace silt

@@ -20,6 +20,12 @@ struct BrownianOptions {
   }
 };
 
+/// How far the particles of this rank have come. m
+struct BrownianWay {
+  double from_lists;  ///< largest distance from where the lists were made
+  double jump;        ///< longest way by the noise of this substep
+};
+
 /// Brownian motion (3.293) by the exact step of Ornstein & Uhlenbeck: over a substep h the drag k (u - v) of a particle
 /// of mass m, rate r = k/m, z = r h, goes with jointly normal changes of velocity and position,
 ///   <dv^2> = (k_B T/m) (1 - e^{-2z}),  <dx dv> = (k_B T/m) (1 - e^{-z})^2/r,
@@ -34,8 +40,8 @@ class Brownian {
   /// m/s, speed that few particles of this mass exceed: three times the root mean square.
   double speed(double mass) const;
   /// Moves the particles of a drift pass on; `time` is that of the end of the substep. Adds what they received to
-  /// DragStep::impulse: it comes from the fluid. Returns the largest squared displacement since the last rebuild.
-  double act(Store& store, const Integration& step, double time) const;
+  /// DragStep::impulse: it comes from the fluid.
+  BrownianWay act(Store& store, const Integration& step, double time) const;
 
  private:
   BrownianOptions options_;

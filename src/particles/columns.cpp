@@ -1,10 +1,10 @@
 #include "particles/columns.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 
 #include "particles/particles.hpp"
+#include "particles/rearrange.hpp"
 
 namespace silt {
 
@@ -19,7 +19,7 @@ int Columns::add(const ColumnRequest& request, int particles) {
     if (!old.start) old.start = request.start;
     return known;
   }
-  columns_.push_back({request, {}, {}});
+  columns_.push_back({request, {}});
   width_ += request.width;
   reserve(std::max(room_, particles));
   return count() - 1;
@@ -65,15 +65,14 @@ void Columns::scatter(int p, const double* from) {
   for (int c = 0; c < count(); from += request(c).width, ++c) std::copy_n(from, request(c).width, row(c, p));
 }
 
-void Columns::reorder(const std::vector<int>& order) {
-  for (int c = 0; c < count(); ++c) {
-    Column& column = columns_[c];
-    const auto width = static_cast<std::size_t>(column.request.width);
-    column.scratch.reserve((static_cast<std::size_t>(room_) + 2) * width);
-    for (std::size_t k = 0; k < order.size(); ++k)
-      std::memcpy(column.scratch.data() + k * width, row(c, order[k]), width * sizeof(double));
-    column.values.swap(column.scratch);
-  }
+void Columns::reorder(const Rearrangement& order) {
+  for (Column& column : columns_) order.apply(column.values.data(), column.request.width);
+}
+
+std::size_t Columns::bytes() const {
+  std::size_t sum = 0;
+  for (const Column& column : columns_) sum += column.values.capacity() * sizeof(double);
+  return sum;
 }
 
 int Columns::ghost_width(bool rebuild) const {

@@ -8,6 +8,7 @@
 namespace silt {
 
 struct Seed;
+class Rearrangement;
 
 /// When the copies of a particle on other ranks (ghosts) get the values of a column.
 enum class GhostValues {
@@ -55,7 +56,7 @@ class Columns {
 
   // What the machinery of the particles does with them.
 
-  /// Makes room for `particles` and two dummies.
+  /// Makes room for `particles` and two that pad.
   void reserve(int particles);
   /// Zeroes the rows from `first` to `last`, exclusive.
   void clear(int first, int last);
@@ -64,8 +65,9 @@ class Columns {
   /// All values of particle p in one row of width() doubles, and back.
   void gather(int p, double* row) const;
   void scatter(int p, const double* row);
-  /// New particle k was order[k].
-  void reorder(const std::vector<int>& order);
+  void reorder(const Rearrangement& order);
+  /// Of the values, as counted by their containers. B
+  std::size_t bytes() const;
   /// Doubles that a ghost gets, at a rebuild or in every step.
   int ghost_width(bool rebuild) const;
   /// The values a ghost gets.
@@ -78,7 +80,7 @@ class Columns {
  private:
   struct Column {
     ColumnRequest request;
-    Aligned<double> values, scratch;
+    Aligned<double> values;
     bool for_ghosts(bool rebuild) const {
       return request.ghosts == GhostValues::every_step || (rebuild && request.ghosts == GhostValues::at_rebuild);
     }

@@ -1,18 +1,21 @@
 #include "particles/contact_lists.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <unordered_map>
 
 namespace silt {
 namespace {
 constexpr int pad_to = 8;  // the widest pack
 }
 
-void ContactLists::reserve_contacts(int count) {
+void ContactLists::reserve(int count) {
   const auto needed = static_cast<std::size_t>(count) + 2 * pad_to;
-  contact_i_.reserve(needed);
-  contact_j_.reserve(needed);
   if (needed <= stride_) return;
-  const std::size_t stride = (needed + needed / 4 + 63) / 64 * 64;
+  const std::size_t stride = (needed + 63) / 64 * 64;
+  contact_i_.reserve(stride);
+  contact_j_.reserve(stride);
   Aligned<double> wider;
   wider.reserve(stride * (components_ > 0 ? components_ : 1));
   for (int c = 0; c < components_; ++c)
@@ -22,8 +25,20 @@ void ContactLists::reserve_contacts(int count) {
   stride_ = stride;
 }
 
+void ContactLists::make_room(int count) {
+  if (static_cast<std::size_t>(count) + 2 * pad_to > stride_) reserve(count + count / 8 + 64);
+}
+
+void ContactLists::clear() {
+  contacts_ = candidates_ = due_count_ = 0;
+  open_page_ = 0;
+  now_ = 0;
+  for (auto& page : page_) page = {};
+}
+
 void ContactLists::gather(const Store& store, ContactMemory& memory) const {
   ParticleRows& rows = memory.rows;
+  memory.once = false;
   rows.start.assign(store.owned + 1, 0);
   const auto each = [&](auto&& visit) {
     for (int k = 0; k < contacts_; ++k) {
@@ -43,119 +58,172 @@ void ContactLists::gather(const Store& store, ContactMemory& memory) const {
   });
 }
 
-void ContactLists::sort_candidates() {
-  candidates_ = static_cast<int>(unsorted_.size());
-  candidate_i_.reserve(static_cast<std::size_t>(candidates_) + 2 * pad_to);
-  candidate_j_.reserve(static_cast<std::size_t>(candidates_) + 2 * pad_to);
-  int at[groups + 1] = {};
-  for (const Unsorted& pair : unsorted_) ++at[pair.group + 1];
-  for (int g = 0; g < groups; ++g) at[g + 1] += at[g];
-  for (int g = 0; g <= groups; ++g) start_[g] = at[g];
-  for (const Unsorted& pair : unsorted_) {
-    const int k = at[pair.group]++;
-    candidate_i_[k] = pair.i;
-    candidate_j_[k] = pair.j;
-  }
+void ContactMemory::complete(const std::vector<std::int64_t>& id) {
+  if (!once) return;
+  once = false;
+  const int particles = static_cast<int>(rows.start.size()) - 1;
+  std::unordered_map<std::int64_t, int> place;
+  for (int p = 0; p < particles; ++p) place[id[p]] = p;
+  const auto each = [&](auto&& visit) {
+    for (int p = 0; p < particles; ++p)
+      for (int k = rows.start[p]; k < rows.start[p + 1]; ++k) {
+        visit(p, k, rows.row(k)[0]);
+        if (const auto partner = place.find(std::bit_cast<std::int64_t>(rows.row(k)[0])); partner != place.end())
+          visit(partner->second, k, std::bit_cast<double>(id[p]));
+      }
+  };
+  ParticleRows both(rows.width);
+  both.start.assign(particles + 1, 0);
+  each([&](int p, int, double) { ++both.start[p + 1]; });
+  for (int p = 0; p < particles; ++p) both.start[p + 1] += both.start[p];
+  both.entries.resize(static_cast<std::size_t>(both.start[particles]) * rows.width);
+  std::vector<int> at(both.start.begin(), both.start.end() - 1);
+  each([&](int p, int k, double partner) {
+    double* row = both.row(at[p]++);
+    std::copy_n(rows.row(k), rows.width, row);
+    row[0] = partner;
+  });
+  rows = std::move(both);
 }
 
-void ContactLists::put_nearest(int i, int j) {
-  candidate_i_.reserve(static_cast<std::size_t>(candidates_) + 2 * pad_to);
-  candidate_j_.reserve(static_cast<std::size_t>(candidates_) + 2 * pad_to);
-  // The first of every further group moves behind its last, which makes room at the end of the nearest.
-  int hole = candidates_++;
-  for (int g = groups - 1; g > 0; --g) {
-    candidate_i_[hole] = candidate_i_[start_[g]];
-    candidate_j_[hole] = candidate_j_[start_[g]];
-    hole = start_[g]++;
+void ContactLists::gather_once(const Store& store, const std::vector<int>& new_place, ContactMemory& memory) const {
+  ParticleRows& rows = memory.rows;
+  memory.once = true;
+  rows.start.assign(store.owned + 1, 0);
+  const auto holder = [&](int k) { return contact_i_[k] < store.owned ? contact_i_[k] : contact_j_[k]; };
+  const auto place_of = [&](int p) { return new_place.empty() ? p : new_place[p]; };
+  for (int k = 0; k < contacts_; ++k) ++rows.start[place_of(holder(k)) + 1];
+  for (int p = 0; p < store.owned; ++p) rows.start[p + 1] += rows.start[p];
+  rows.entries.resize(static_cast<std::size_t>(contacts_) * rows.width);
+  // The starts serve as places to write at and are shifted back.
+  for (int k = 0; k < contacts_; ++k) {
+    const int p = holder(k), partner = contact_i_[k] + contact_j_[k] - p;
+    double* row = rows.row(rows.start[place_of(p)]++);
+    row[0] = std::bit_cast<double>(store.id[partner]);
+    for (int c = 0; c < components_; ++c) row[1 + c] = history_[c * stride_ + k];
   }
-  candidate_i_[hole] = i;
-  candidate_j_[hole] = j;
+  for (int p = store.owned; p > 0; --p) rows.start[p] = rows.start[p - 1];
+  rows.start[0] = 0;
 }
 
-void ContactLists::take_out(int place) {
-  int group = 0;
-  while (group + 1 < groups && start_[group + 1] <= place) ++group;
-  // The last of its group takes its place, and so on in every further group.
-  for (int hole = place; group < groups; ++group) {
-    const int last = (group + 1 < groups ? start_[group + 1] : candidates_) - 1;
-    candidate_i_[hole] = candidate_i_[last];
-    candidate_j_[hole] = candidate_j_[last];
-    hole = last;
-    if (group + 1 < groups) --start_[group + 1];
-  }
-  --candidates_;
+void ContactLists::file(int i, int j, double due) {
+  const auto page = static_cast<long long>(due);
+  if (page <= open_page_) return add_due(i, j);
+  page_[std::min(page, open_page_ + pages - 1) % pages].push_back({i, j});
+}
+
+void ContactLists::add_due(int i, int j) {
+  const auto needed = static_cast<std::size_t>(due_count_) + 2 * pad_to;
+  due_i_.reserve(needed);
+  due_j_.reserve(needed);
+  due_i_[due_count_] = i;
+  due_j_[due_count_++] = j;
+}
+
+void ContactLists::add_candidate(int i, int j, double gap) {
+  ++candidates_;
+  file(i, j, std::max(gap, 0.0) * pages_a_skin);
 }
 
 void ContactLists::add_contact(int i, int j, const double* history, std::size_t history_step) {
-  reserve_contacts(contacts_ + 1);
+  make_room(contacts_ + 1);
   contact_i_[contacts_] = i;
   contact_j_[contacts_] = j;
   for (int c = 0; c < components_; ++c) history_[c * stride_ + contacts_] = history ? history[c * history_step] : 0.0;
   ++contacts_;
 }
 
-void ContactLists::pad_contacts(int dummy) {
-  reserve_contacts(contacts_);
+void ContactLists::pad_contacts() {
+  make_room(contacts_);
   for (int k = contacts_; k < contacts_ + pad_to; ++k) {
-    contact_i_[k] = dummy;
-    contact_j_[k] = dummy + 1;
+    contact_i_[k] = padding_;
+    contact_j_[k] = padding_ + 1;
     for (int c = 0; c < components_; ++c) history_[c * stride_ + k] = 0;
   }
 }
 
-void ContactLists::pad_candidates(int dummy) {
-  candidate_i_.reserve(static_cast<std::size_t>(candidates_) + 2 * pad_to);
-  candidate_j_.reserve(static_cast<std::size_t>(candidates_) + 2 * pad_to);
-  for (int k = candidates_; k < candidates_ + pad_to; ++k) {
-    candidate_i_[k] = dummy;
-    candidate_j_[k] = dummy + 1;
-  }
-}
-
-void ContactLists::pad(int dummy) {
-  pad_contacts(dummy);
-  pad_candidates(dummy);
+void ContactLists::pad(int padding) {
+  padding_ = padding;
+  for (auto& page : page_)
+    if (page.capacity() > page.size() + page.size() / 8) page.shrink_to_fit();
+  pad_contacts();
 }
 
 PairArrays ContactLists::pairs() { return {contacts_, contact_i_.data(), contact_j_.data(), history_.data(), stride_}; }
 
-void ContactLists::fill(CandidateSweep& sweep, double moved) {
-  if (static_cast<int>(places_.size()) < candidates_ + pad_to) places_.resize(candidates_ + candidates_ / 4 + pad_to);
-  // Both may have moved; the share of a group is rounded up.
-  const double reached = 2 * moved * groups + 1e-6;
-  sweep.count = reached < groups - 1 ? start_[static_cast<int>(reached) + 1] : candidates_;
-  sweep.i = candidate_i_.data();
-  sweep.j = candidate_j_.data();
-  sweep.entering = places_.data();
-}
-
-int* ContactLists::leaving() {
-  if (static_cast<int>(places_.size()) < contacts_ + pad_to) places_.resize(contacts_ + contacts_ / 4 + pad_to);
-  return places_.data();
-}
-
-void ContactLists::enter(const int* places, int count, int dummy) {
-  if (count == 0) return;
-  reserve_contacts(contacts_ + count);
-  for (int e = count - 1; e >= 0; --e) {  // from the back, so that the last one moved in is never one of those to move
-    const int k = places[e];
-    add_contact(candidate_i_[k], candidate_j_[k], nullptr, 0);
-    take_out(k);
+void ContactLists::look(CandidateSweep& sweep, double moved, double skin, void (*measure)(CandidateSweep&)) {
+  now_ = (2 * moved + 1e-6) * pages_a_skin;  // both may have moved; rounded up
+  const auto reached = static_cast<long long>(now_);
+  for (int turned = 0; open_page_ < reached && turned < pages; ++turned) {
+    auto& page = page_[++open_page_ % pages];
+    for (const Pair& pair : page) add_due(pair.i, pair.j);
+    page = {};
   }
-  pad(dummy);
+  open_page_ = std::max(open_page_, reached);
+  const auto needed = static_cast<std::size_t>(due_count_) + 2 * pad_to;
+  due_i_.reserve(needed);
+  due_j_.reserve(needed);
+  for (int k = due_count_; k < due_count_ + pad_to; ++k) {
+    due_i_[k] = padding_;
+    due_j_[k] = padding_ + 1;
+  }
+
+  const double scale = pages_a_skin / skin;
+  const int due = due_count_, before = contacts_;
+  looked_at_ = due;
+  due_count_ = 0;
+  constexpr int at_once = 512;
+  gap_.reserve(at_once + pad_to);
+  const double* gap = sweep.gap = gap_.data();
+  for (int first = 0; first < due; first += at_once) {
+    sweep.count = std::min(at_once, due - first);
+    sweep.i = due_i_.data() + first;
+    sweep.j = due_j_.data() + first;
+    measure(sweep);
+    for (int k = 0; k < sweep.count; ++k) {
+      const int i = due_i_[first + k], j = due_j_[first + k];  // file() writes no further than here
+      if (gap[k] < 0) {
+        add_contact(i, j, nullptr, 0);
+        --candidates_;
+      } else {
+        file(i, j, now_ + gap[k] * scale);
+      }
+    }
+  }
+  if (contacts_ > before) pad_contacts();
 }
 
-void ContactLists::leave(const int* places, int count, int dummy) {
+unsigned char* ContactLists::leaving() {
+  leaving_.assign(contacts_ / 8 + 1, 0);
+  return leaving_.data();
+}
+
+void ContactLists::leave(int count) {
   if (count == 0) return;
-  for (int e = count - 1; e >= 0; --e) {
-    const int k = places[e];
-    put_nearest(contact_i_[k], contact_j_[k]);
+  // From the back, so that the last one moved in is never one of those to move.
+  for (int k = contacts_ - 1; count > 0; --k) {
+    if (leaving_[k / 8] == 0) k &= ~7;
+    if (!(leaving_[k / 8] >> k % 8 & 1)) continue;
+    --count;
+    add_due(contact_i_[k], contact_j_[k]);
+    ++candidates_;
     --contacts_;
     contact_i_[k] = contact_i_[contacts_];
     contact_j_[k] = contact_j_[contacts_];
     for (int c = 0; c < components_; ++c) history_[c * stride_ + k] = history_[c * stride_ + contacts_];
   }
-  pad(dummy);
+  pad_contacts();
+}
+
+std::size_t ContactLists::contact_bytes() const {
+  return (contact_i_.capacity() + contact_j_.capacity()) * sizeof(int) + leaving_.capacity() +
+         history_.capacity() * sizeof(double);
+}
+
+std::size_t ContactLists::candidate_bytes() const {
+  std::size_t pairs = 0;
+  for (const auto& page : page_) pairs += page.capacity();
+  return pairs * sizeof(Pair) + (due_i_.capacity() + due_j_.capacity()) * sizeof(int);
 }
 
 }  // namespace silt

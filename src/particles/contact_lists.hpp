@@ -16,6 +16,11 @@ class ContactMemory {
  public:
   explicit ContactMemory(int components) : rows(1 + components) {}
   ParticleRows rows;
+  /// Whether a contact of two particles of this rank stands in the row of one of them only, that which find_pairs()
+  /// asks: enough while both stay.
+  bool once = false;
+  /// Then gives the other its row too. `id`: of the particles of this rank.
+  void complete(const std::vector<std::int64_t>& id);
   int components() const { return rows.width - 1; }
   /// The history of particle p with `other`, or null when they did not touch.
   const double* find(int p, std::int64_t other) const {
@@ -25,8 +30,13 @@ class ContactMemory {
   }
 };
 
-/// The pairs of particles that touch, with packed history, and the pairs near enough to touch before the next rebuild.
-/// In both, i is the particle with the lower global id, so that all ranks that know a pair compute the same bits.
+/// The pairs of particles that touch, with packed history, and the candidates: pairs near enough to touch before the
+/// next rebuild. In both, i is the particle with the lower global id, so that all ranks that know a pair compute the
+/// same bits.
+///
+/// Candidates wait in a calendar. A pair with a gap g cannot touch before both particles together may have come that
+/// far, and nobody looks at it until then; found apart, it is filed again by the gap it has. Time in the calendar is
+/// twice the way that the fastest particle of every step has come since the lists were made, in skins.
 class ContactLists {
  public:
   explicit ContactLists(int components) : components_(components) {}
@@ -39,55 +49,59 @@ class ContactLists {
   double history(int component, int contact) const { return history_[component * stride_ + contact]; }
   int components() const { return components_; }
 
-  /// Candidates stand in groups of growing gap: those of group g are at least g/groups of the skin from touching, so
-  /// that they need no test before two particles together may have moved that far.
-  static constexpr int groups = 16;
-
   /// What the contacts remember, for every owned particle of the store the lists belong to.
   void gather(const Store& store, ContactMemory& memory) const;
-  void clear() {
-    contacts_ = candidates_ = 0;
-    unsorted_.clear();
-    for (int& start : start_) start = 0;
-  }
-  /// A pair for sort_candidates(); `gap` is what it lacks to a contact, as a share of the skin.
-  void add_candidate(int i, int j, double gap) {
-    const int group = static_cast<int>(gap * groups);
-    unsorted_.push_back({i, j, group < 0 ? 0 : group >= groups ? groups - 1 : group});
-  }
-  /// Makes the added pairs the candidates, by group and in the order in which they were added.
-  void sort_candidates();
+  /// The same with each contact once, for particles about to be reordered: p becomes new_place[p] (empty: p stays).
+  void gather_once(const Store& store, const std::vector<int>& new_place, ContactMemory& memory) const;
+  /// Empties the lists; the clock of the calendar begins anew.
+  void clear();
+  /// Room for so many contacts, no more.
+  void reserve(int contacts);
+  /// A new candidate; `gap` is what it lacks to a contact, in skins (below 0: it is one).
+  void add_candidate(int i, int j, double gap);
   /// With the history it had, or null for a new contact.
   void add_contact(int i, int j, const double* history, std::size_t history_step);
 
-  /// Pads the lists to whole packs with the dummy pair (dummy, dummy + 1).
-  void pad(int dummy);
+  /// From now on the lists are padded to whole packs with the pair (padding, padding + 1).
+  void pad(int padding);
   PairArrays pairs();
-  /// Fills in the candidates that may touch once no particle has moved further than this share of the skin, and room
-  /// for the answer.
-  void fill(CandidateSweep& sweep, double moved);
-  int* leaving();
-  /// Moves the candidates at the places found by the sweep to the contacts, and those contacts that ended back.
-  void enter(const int* places, int count, int dummy);
-  void leave(const int* places, int count, int dummy);
+  /// Looks at the candidates that may touch once the fastest particles have come `moved` skins since the lists were
+  /// made (steps added up): `measure` gives their gaps; those with gaps below 0 become contacts, the others are filed
+  /// by them. `sweep`: all but the pairs.
+  void look(CandidateSweep& sweep, double moved, double skin, void (*measure)(CandidateSweep&));
+  int looked_at() const { return looked_at_; }  ///< pairs, in the last look()
+  /// A bit for each contact, all clear, for the sweep to mark those that ended.
+  unsigned char* leaving();
+  /// Moves the marked contacts, `count` of them, to the candidates.
+  void leave(int count);
+  /// Memory by array, as counted by its containers. B
+  std::size_t contact_bytes() const;
+  std::size_t candidate_bytes() const;
 
  private:
-  void reserve_contacts(int count);
-  void pad_contacts(int dummy);
-  void pad_candidates(int dummy);
-  void put_nearest(int i, int j);
-  void take_out(int place);
-
-  int components_, contacts_ = 0, candidates_ = 0;
-  std::size_t stride_ = 0;
-  Aligned<int> contact_i_, contact_j_, candidate_i_, candidate_j_;
-  int start_[groups + 1] = {};  ///< of each group; the last entry is not kept
-  struct Unsorted {
-    int i, j, group;
+  struct Pair {
+    int i, j;
   };
-  std::vector<Unsorted> unsorted_;
+  /// The calendar has pages of equal time; it goes round, so that no pair may be filed further ahead than a round.
+  static constexpr int pages_a_skin = 32, pages = 64;
+
+  void make_room(int count);
+  void pad_contacts();
+  void file(int i, int j, double due);
+  void add_due(int i, int j);
+
+  int components_, contacts_ = 0, candidates_ = 0, padding_ = 0;
+  std::size_t stride_ = 0;
+  Aligned<int> contact_i_, contact_j_;
   Aligned<double> history_;  ///< [components][stride]
-  std::vector<int> places_;
+  std::vector<Pair> page_[pages];
+  long long open_page_ = 0;  ///< all up to this are in the due list
+  double now_ = 0;           ///< in pages
+  int due_count_ = 0;
+  Aligned<int> due_i_, due_j_;
+  Aligned<double> gap_;  ///< m, of those measured at once
+  int looked_at_ = 0;
+  std::vector<unsigned char> leaving_;
 };
 
 }  // namespace silt

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "base/error.hpp"
 #include "particles/insertion/insertion.hpp"
+#include "particles/log_event.hpp"
 
 namespace silt {
 namespace {
@@ -94,6 +96,9 @@ void Engine::add(const std::vector<Seed>& seeds) {
   if (!detached_) detach();
   store.ghosts = 0;
   store.id.resize(store.owned);
+  store.reserve(store.owned + static_cast<int>(here));
+  store.id.reserve(store.owned + here);
+  store.cell.reserve(store.owned + here);
   double fastest = 0;
   smallest_.radius.assign(materials.count(), infinity);
   for (std::size_t k = 0; k < seeds.size(); ++k) {
@@ -119,7 +124,7 @@ void Engine::add(const std::vector<Seed>& seeds) {
     store.present[p] = store.previous[p] = Load{};
     store.id.push_back(next_id_ + static_cast<std::int64_t>(k));
     store.cell.push_back(places[k].cell);
-    store.action.emplace_back();
+    if (store.acted_on) store.action.emplace_back();
     store.columns.start(p, seed);
     memory_.rows.append(nullptr, 0);
     wall_memory_.append(nullptr, 0);
@@ -168,93 +173,6 @@ void Engine::choose_step() {
   limit = limit_step(options_, materials, laws_, smallest_, speed_, bounds);
 }
 
-void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
-  ++rebuilds_;
-  if (within_step) adapt_skin();
-  if (fluid_ && within_step) collect_fluid();  // between steps all is collected, and new ones have no drag yet
-  std::string fast;
-  if (within_step)
-    for (int p = 0; p < store.owned && fast.empty(); ++p)
-      if (h * vec3(store.motion[p].velocity).norm() > store.motion[p].radius)
-        fast = fmt::format("a particle moves more than its radius in a step of {:g} s (-particles_fast): {}", h,
-                           describe(p));
-  if (options_.fast == "stop")
-    stop_if_any(fast);
-  else
-    report("warn", fast);
-
-  if (!detached_) detach();
-  const std::vector<Gone> gone = migration_.run(store, carried, memory_.rows, wall_memory_);
-  const long long gone_everywhere = mpi_sum(static_cast<long long>(gone.size()));
-  if (gone_everywhere > 0) {
-    depart(gone, within_step, h);
-    liquid_.forget(store, memory_, gone, communicator_);
-    removed += gone_everywhere;
-    total -= gone_everywhere;
-  }
-  const long long counted = mpi_sum(static_cast<long long>(store.owned));
-  if (counted != total) throw RunError(fmt::format("{} particles are accounted for, but {} are there", total, counted));
-
-  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
-  for (int p = 0; p < store.owned; ++p) {
-    const auto position = vec3(store.motion[p].position);
-    lower = p == 0 ? Vec3(position) : lower.cwiseMin(position);
-    upper = p == 0 ? Vec3(position) : upper.cwiseMax(position);
-  }
-  const double gap = laws_.setup().leave_gap;
-  const double reach = 2 * largest_radius_ + gap + skin_;
-  const CellGrid grid(lower, upper, mesh.lower, periods_, reach, store.owned);
-  const std::vector<int> order = order_along(grid, store);
-  store.reorder(order, carried);
-  memory_.rows.reorder(order);
-  wall_memory_.reorder(order);
-  halo_.build(store, periods_, reach);
-  store.reserve(store.all());
-  store.place_dummies();
-  // A wet pair that has just passed the gap gives its liquid back before it is forgotten.
-  find_pairs(grid, store, periods_, {laws_.setup().enter_gap, gap, skin_, liquid_.active() ? gap + skin_ : gap},
-             memory_, contacts);
-  travel_ = 0;
-  steps_since_rebuild_ = 0;
-  contacts.pad(store.dummy());
-  wall_contacts.restore(wall_memory_);
-  detached_ = false;
-  walls_.list(store.motion.data(), store.owned, skin_, gap);
-  for (int p = 0; p < store.owned; ++p)
-    for (int d = 0; d < 3; ++d) store.origin[p].entry[d] = store.motion[p].position[d];
-  if (fluid_ && within_step) prepare_fluid(h);
-  sum_up();
-}
-
-/// The bound on how far particles have come grows with the fastest of each step; before the lists are made anew, the
-/// distances from where they were made are looked at.
-bool Engine::out_of_lists() {
-  if (travel_ <= 0.5 * skin_) return false;
-  double largest = 0;
-  for (int p = 0; p < store.owned; ++p) {
-    double square = 0;
-    for (int d = 0; d < 3; ++d) {
-      const double moved = store.motion[p].position[d] - store.origin[p].entry[d];
-      square += moved * moved;
-    }
-    largest = std::max(largest, square);
-  }
-  if (mpi_size() > 1) MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator_);
-  travel_ = std::min(travel_, std::sqrt(largest));
-  return travel_ > 0.45 * skin_;
-}
-
-/// Where particles run, a wider skin costs less than the lists it saves (candidates are tested only once they may
-/// touch).
-void Engine::adapt_skin() {
-  constexpr int seldom = 60;
-  if (options_.skin > 0 || steps_since_rebuild_ >= seldom) return;
-  double widest = 0.5 * largest_radius_;
-  for (const double length : periods_.length)
-    if (length > 0) widest = std::min(widest, 0.5 * length - 2 * largest_radius_ - laws_.setup().leave_gap);
-  skin_ = std::max(skin_, std::min(1.25 * skin_, widest));
-}
-
 void Engine::sum_up() {
   mass_ = 0;
   fluid_force_.setZero();
@@ -269,6 +187,10 @@ Integration Engine::pass(double h) {
   step.motion = store.motion.data();
   step.present = store.present.data();
   step.previous = store.previous.data();
+  if (few_loaded_ && few_loaded_before_) {
+    step.loaded = loaded_.data();
+    step.loaded_before = loaded_before_.data();
+  }
   step.drag = fluid_ ? store.drag.data() : nullptr;
   step.turning = turning_ ? store.turning.data() : nullptr;
   step.count = store.owned;
@@ -325,6 +247,8 @@ ParticleStep Engine::advance(double time, double dt) {
   const bool alone = mpi_size() == 1;
   const double late = options_.late_share(), early = 1 - late;
   trouble_.clear();
+  static const PetscLogEvent event = log_event("SiltSubsteps");
+  auto logged = std::make_optional<Logged>(event);
   for (int s = 0; s < substeps; ++s) {
     impulses.gravity += h * mass_ * gravity_;
     impulses.fluid_force += h * fluid_force_;
@@ -334,16 +258,24 @@ ParticleStep Engine::advance(double time, double dt) {
     step.correct = s > 0 && late > 0 && !energy_;
     step.drift = true;
     kernels_.integrate(step);
-    double farthest = travel_ + std::sqrt(step.largest_square);
-    if (brownian_.active() && fluid_) farthest = std::sqrt(brownian_.act(store, step, time + (s + 1) * h));
+    double way = std::sqrt(step.largest_square), farthest = travel_ + way;
+    if (brownian_.active() && fluid_) {
+      const BrownianWay noise = brownian_.act(store, step, time + (s + 1) * h);
+      farthest = noise.from_lists;
+      way += noise.jump;
+    }
     store.present.swap(store.previous);
+    loaded_.swap(loaded_before_);
+    few_loaded_before_ = few_loaded_;
     if (!std::isfinite(step.check)) trouble_ = find_bad();
     move_walls(time + s * h, h);
     ++steps_since_rebuild_;
-    // Whether anything is wrong, whether a wall has left its list, how far any particle may have come.
-    double state[3] = {double(!trouble_.empty()), double(walls_.moved() > 0.5 * skin_), farthest};
-    if (!alone) MPI_Allreduce(MPI_IN_PLACE, state, 3, MPI_DOUBLE, MPI_MAX, communicator_);
+    // Whether anything is wrong, whether a wall has left its list, how far any particle may have come, and how far in
+    // this step.
+    double state[4] = {double(!trouble_.empty()), double(walls_.moved() > 0.5 * skin_), farthest, way};
+    if (!alone) MPI_Allreduce(MPI_IN_PLACE, state, 4, MPI_DOUBLE, MPI_MAX, communicator_);
     travel_ = state[2];
+    path_ += state[3];
     if (state[0] > 0) stop_if_any(trouble_);
     if (state[1] > 0 || out_of_lists())
       rebuild(store.previous, true, h);
@@ -363,6 +295,7 @@ ParticleStep Engine::advance(double time, double dt) {
     if (heat_) heat_->advance(store, contacts, periods_, time + (s + 1) * h, h);
   }
   if (!energy_) correct(h);
+  logged.reset();
   collect_fluid();
   // The positions of each step have been looked at; now the velocities that the last forces left.
   double speeds = 0;

@@ -41,7 +41,7 @@ class OwnCommunicator {
 struct Particles::Snapshot {
   int owned = 0;
   std::vector<Motion> motion;
-  std::vector<Load> present;
+  std::vector<Load> present;  ///< empty: not kept
   std::vector<std::int64_t> id;
   std::vector<int> cell;
   std::vector<FluidAction> action;
@@ -57,6 +57,7 @@ struct Particles::Snapshot {
   EnergyLedger::State energy;
   std::vector<StreamState> streams;
   bool started;
+  std::size_t bytes() const;
 };
 
 /// What is behind Particles: the parts of the particle solver and the loop over the substeps.
@@ -75,7 +76,10 @@ class Engine {
   std::vector<std::string> warnings() const;
   /// Liquid of this rank's films and of what they gave to bridges; after an advance. m3
   double liquid_volume() const { return liquid_.volume(store, contacts, wall_contacts); }
-  std::shared_ptr<const Particles::Snapshot> snapshot() const;
+  /// `to_repeat`: with the present forces, so that a step can be repeated bit by bit.
+  std::shared_ptr<const Particles::Snapshot> snapshot(bool to_repeat) const;
+  /// What this rank's arrays take, by name. B
+  std::vector<std::pair<std::string, std::size_t>> bytes() const;
   void restore(const Particles::Snapshot& snapshot);
   void save(CheckpointWriter& to);
   void load(const CheckpointReader& from, bool elsewhere);
@@ -110,10 +114,12 @@ class Engine {
   void collect_fluid();
   void start(double time);
   void rebuild(Aligned<Load>& carried, bool within_step, double h);
+  void sort_along(const CellGrid& grid, Aligned<Load>& carried);
   bool out_of_lists();
   void adapt_skin();
   void depart(const std::vector<Gone>& gone, bool within_step, double h);
   void evaluate(double time, double dt);
+  void note_loaded();
   /// Takes the work of the step that evaluate() ended, and lets go of the contacts that ended with it.
   void account(double h);
   void correct(double h);
@@ -169,6 +175,10 @@ class Engine {
   Periods periods_;
   double skin_ = 0, largest_radius_ = 0;
   double travel_ = 0;  ///< m, no particle of any rank is further from where the lists were made
+  double path_ = 0;    ///< m, sum of the longest ways of a particle of any rank in each step since then
+  // Which particles the last evaluation may have loaded, and the one before it, where it was worth noting.
+  bool few_loaded_ = false, few_loaded_before_ = false;
+  std::vector<unsigned char> loaded_, loaded_before_;
   int steps_since_rebuild_ = 0;
   SmallestRadii smallest_;
   std::int64_t next_id_ = 0;

@@ -54,10 +54,14 @@ void load_rows(const CheckpointReader& from, const std::string& name, long long 
 void Engine::save(CheckpointWriter& to) {
   // The lists are made anew after a checkpoint, as after a restart: both then sum in the same order.
   if (!detached_) detach();
+  memory_.complete(store.id);  // other ranks may read it
   const int n = store.owned;
   to.add("particle_motion", motion_width, as_numbers(store.motion.data(), n));
   to.add("particle_load", load_width, as_numbers(store.present.data(), n));
-  to.add("particle_action", action_width, as_numbers(store.action.data(), n));
+  if (mpi_any(store.acted_on)) {
+    store.want_actions();
+    to.add("particle_action", action_width, as_numbers(store.action.data(), n));
+  }
   to.add("particle_id", 1, std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n));
   to.add("particle_cell", 1, std::vector<std::int64_t>(store.cell.begin(), store.cell.begin() + n));
   for (int c = 0; c < store.columns.count(); ++c) {
@@ -116,7 +120,9 @@ void Engine::load(const CheckpointReader& from, bool elsewhere) {
     from.refuse(fmt::format("has the materials {}this case has {}", from.text("materials"), names));
   if (from.text("walls") != walls)
     from.refuse(fmt::format("has the walls {}this case has {}", from.text("walls"), walls));
-  if (from.components("particle_motion") != motion_width || from.components("particle_action") != action_width)
+  const bool acted_on = from.has("particle_action");
+  if (from.components("particle_motion") != motion_width ||
+      (acted_on && from.components("particle_action") != action_width))
     from.refuse("was written by another version of Silt: a particle has other properties there");
 
   const auto each = from.wholes("particles_each_rank");
@@ -132,18 +138,22 @@ void Engine::load(const CheckpointReader& from, bool elsewhere) {
   store.owned = n;
   store.ghosts = 0;
   store.reserve(n);
-  const auto motion = from.numbers("particle_motion", first, n), load = from.numbers("particle_load", first, n),
-             action = from.numbers("particle_action", first, n);
+  const auto motion = from.numbers("particle_motion", first, n), load = from.numbers("particle_load", first, n);
   std::copy(motion.begin(), motion.end(), reinterpret_cast<double*>(store.motion.data()));
   std::copy(load.begin(), load.end(), reinterpret_cast<double*>(store.present.data()));
   store.columns.reserve(n);
-  store.action.resize(n);
-  std::copy(action.begin(), action.end(), reinterpret_cast<double*>(store.action.data()));
+  store.action.assign(store.acted_on ? n : 0, {});
+  if (acted_on) {
+    store.want_actions();
+    const auto action = from.numbers("particle_action", first, n);
+    std::copy(action.begin(), action.end(), reinterpret_cast<double*>(store.action.data()));
+  }
   store.id = from.wholes("particle_id", first, n);
   const auto cells = from.wholes("particle_cell", first, n);
   store.cell.assign(n, -1);
   if (same_ranks) std::copy(cells.begin(), cells.end(), store.cell.begin());
   load_rows(from, "contacts", first, n, memory_.rows);
+  memory_.once = false;
   load_rows(from, "wall_contacts", first, n, wall_memory_);
 
   const auto force = from.numbers("wall_force"), torque = from.numbers("wall_torque"),
@@ -211,7 +221,8 @@ void Engine::load(const CheckpointReader& from, bool elsewhere) {
   impulses = {};
   departed.clear();
   // On other ranks than those that wrote, every particle goes where its cell is.
-  if (!same_ranks && !migration_.run(store, store.present, memory_.rows, wall_memory_).empty())
+  if (!same_ranks && migration_.any_away(store) &&
+      !migration_.run(store, store.present, memory_.rows, wall_memory_).empty())
     throw RunError("a particle of the checkpoint lies outside the mesh");
 }
 

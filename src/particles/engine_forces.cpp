@@ -9,12 +9,13 @@ namespace silt {
 
 void Engine::act_fields(double time, double dt) {
   FieldStep step{store, periods_, materials, communicator_, time, dt};
-  std::vector<Vec3> contacts_only(store.owned);
-  for (int p = 0; p < store.owned; ++p) contacts_only[p] = vec3(store.present[p].force);
+  // Who couples the particles to a fluid wants to know what the fields gave each of them.
+  std::vector<Vec3> contacts_only(store.acted_on ? store.owned : 0);
+  for (std::size_t p = 0; p < contacts_only.size(); ++p) contacts_only[p] = vec3(store.present[p].force);
   if (energy_) energy_->before_fields(store);
   for (const auto& field : fields_) field->act(step);
   if (energy_) energy_->after_fields(store);
-  for (int p = 0; p < store.owned; ++p)
+  for (std::size_t p = 0; p < contacts_only.size(); ++p)
     vec3(store.action[p].field_impulse) += dt * (vec3(store.present[p].force) - contacts_only[p]);
   field_total_ = step.external;
   if (plane_) field_total_[2] = 0;
@@ -27,9 +28,7 @@ void Engine::evaluate(double time, double dt) {
   search.motion = store.motion.data();
   search.periods = periods_;
   search.enter_gap = setup.enter_gap;
-  contacts.fill(search, travel_ / skin_);
-  kernels_.candidates(search);
-  contacts.enter(search.entering, search.entering_count, store.dummy());
+  contacts.look(search, path_ / skin_, skin_, kernels_.candidates);
 
   walls_.points(store.motion.data(), time, wall_contacts.next());
   wall_contacts.adopt();
@@ -44,10 +43,12 @@ void Engine::evaluate(double time, double dt) {
   sweep.dt = dt;
   sweep.deepest_share = options_.overlap_limit;
   sweep.leaving = contacts.leaving();
+  sweep.scattered = contacts.contacts() < store.owned / 2;
   if (energy_) energy_->trace(sweep);
   kernels_.pairs(sweep);
   if (sweep.too_deep >= 0) report(options_.deep, describe_deepest(sweep.too_deep));
-  if (!energy_) contacts.leave(sweep.leaving, sweep.leaving_count, store.dummy());
+  note_loaded();
+  if (!energy_) contacts.leave(sweep.leaving_count);
   leaving_count_ = sweep.leaving_count;
 
   std::fill(wall_force_sum_.begin(), wall_force_sum_.end(), 0.0);
@@ -82,10 +83,20 @@ void Engine::evaluate(double time, double dt) {
   if (!fields_.empty()) act_fields(time, dt);
 }
 
+/// Where few particles touch anything, the others' loads, which are zero, need not pass through the processor.
+void Engine::note_loaded() {
+  constexpr double dense = 0.75;  // contacts a particle
+  few_loaded_ = fields_.empty() && contacts.contacts() < dense * store.owned;
+  if (!few_loaded_) return;
+  loaded_.assign(store.all() + 2, 0);
+  for (int k = 0; k < contacts.contacts(); ++k) loaded_[contacts.contact_i()[k]] = loaded_[contacts.contact_j()[k]] = 1;
+  for (const WallPoint& point : wall_contacts.points()) loaded_[point.particle] = 1;
+}
+
 void Engine::account(double h) {
   if (!energy_) return;
   energy_->account({store, contacts, wall_contacts, laws_, periods_, pass(h), fluid_, h});
-  contacts.leave(contacts.leaving(), leaving_count_, store.dummy());
+  contacts.leave(leaving_count_);
 }
 
 void Engine::correct(double h) {

@@ -42,6 +42,7 @@ void Engine::heat_held(double time, double dt) {
 ParticleStep Engine::hold(double time, double dt) {
   if (!started_) start(0);  // they may not overlap more than others
   if (detached_) rebuild(store.present, false, 0);
+  store.want_actions();
   Vec3 support = Vec3::Zero();
   for (int p = 0; p < store.owned; ++p) {
     FluidAction& action = store.action[p];
@@ -76,18 +77,18 @@ void Engine::detach() {
   detached_ = true;
 }
 
-std::shared_ptr<const Particles::Snapshot> Engine::snapshot() const {
+std::shared_ptr<const Particles::Snapshot> Engine::snapshot(bool to_repeat) const {
   ContactMemory memory = memory_;
   ParticleRows wall_memory = wall_memory_;
   if (!detached_) {
-    contacts.gather(store, memory);
+    contacts.gather_once(store, {}, memory);
     wall_contacts.gather(store.owned, wall_memory);
   }
   const int n = store.owned;
   return std::make_shared<const Particles::Snapshot>(
       Particles::Snapshot{n,
                           std::vector<Motion>(store.motion.data(), store.motion.data() + n),
-                          std::vector<Load>(store.present.data(), store.present.data() + n),
+                          std::vector<Load>(store.present.data(), store.present.data() + (to_repeat ? n : 0)),
                           std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n),
                           store.cell,
                           store.action,
@@ -105,7 +106,7 @@ std::shared_ptr<const Particles::Snapshot> Engine::snapshot() const {
                           walls_.states(),
                           energy_ ? energy_->state() : EnergyLedger::State{},
                           streams_.states(),
-                          started_});
+                          started_ && to_repeat});
 }
 
 void Engine::restore(const Particles::Snapshot& saved) {
@@ -114,9 +115,12 @@ void Engine::restore(const Particles::Snapshot& saved) {
   store.reserve(saved.owned);
   std::copy(saved.motion.begin(), saved.motion.end(), store.motion.data());
   std::copy(saved.present.begin(), saved.present.end(), store.present.data());
+  if (saved.present.empty()) std::fill_n(store.present.data(), saved.owned, Load{});  // start() evaluates them anew
   store.id = saved.id;
   store.cell = saved.cell;
+  store.acted_on = store.acted_on || !saved.action.empty();
   store.action = saved.action;
+  if (store.acted_on) store.action.resize(saved.owned);
   store.columns.restore(saved.columns, saved.owned);
   contacts.clear();
   memory_ = saved.contacts;
@@ -137,6 +141,23 @@ void Engine::restore(const Particles::Snapshot& saved) {
   started_ = saved.started;
   departed.clear();
   fluid_ = turning_ = false;
+}
+
+std::size_t Particles::Snapshot::bytes() const {
+  const auto rows = [](const ParticleRows& of) {
+    return of.start.capacity() * sizeof(int) + of.entries.capacity() * sizeof(double);
+  };
+  return motion.capacity() * sizeof(Motion) + present.capacity() * sizeof(Load) + id.capacity() * sizeof(id[0]) +
+         cell.capacity() * sizeof(int) + action.capacity() * sizeof(FluidAction) + columns.capacity() * sizeof(double) +
+         rows(contacts.rows) + rows(walls);
+}
+
+std::vector<std::pair<std::string, std::size_t>> Engine::bytes() const {
+  auto all = store.bytes();
+  all.push_back({"contacts", contacts.contact_bytes()});
+  all.push_back({"candidates", contacts.candidate_bytes()});
+  all.push_back({"marks", loaded_.capacity() + loaded_before_.capacity()});
+  return all;
 }
 
 }  // namespace silt

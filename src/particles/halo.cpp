@@ -1,37 +1,15 @@
 #include "particles/halo.hpp"
 
-#include <petscsys.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
+
+#include "particles/log_event.hpp"
 
 namespace silt {
 namespace {
 
 constexpr int tag = 71;
-
-PetscLogEvent registered(const char* name) {
-  static PetscClassId id = 0;
-  if (id == 0) PetscClassIdRegister("Silt particles", &id);
-  PetscLogEvent event = 0;
-  PetscLogEventRegister(name, id, &event);
-  return event;
-}
-
-/// `-log_view` shows what its scope sends: PETSc's headers count the messages of a file that includes them.
-class Logged {
- public:
-  explicit Logged(PetscLogEvent event) : event_(event) {
-    PetscLogEventBegin(event_, nullptr, nullptr, nullptr, nullptr);
-  }
-  ~Logged() { PetscLogEventEnd(event_, nullptr, nullptr, nullptr, nullptr); }
-  Logged(const Logged&) = delete;
-  Logged& operator=(const Logged&) = delete;
-
- private:
-  PetscLogEvent event_;
-};
 
 /// Box around a rank's particles; empty when lower > upper.
 struct Bounds {
@@ -93,7 +71,7 @@ void Halo::build(Store& store, const Periods& periods, double cutoff) {
       receive_start_.push_back(receive_start_.back() + receives[rank]);
     }
 
-  static const PetscLogEvent event = registered("SiltGhostLists");
+  static const PetscLogEvent event = log_event("SiltGhostLists");
   const Logged logged(event);
   store.ghosts = receive_start_.back();
   store.reserve(store.all());
@@ -129,7 +107,7 @@ void Halo::build(Store& store, const Periods& periods, double cutoff) {
 
 void Halo::forward(Store& store) {
   if (send_rank_.empty() && receive_rank_.empty()) return;
-  static const PetscLogEvent event = registered("SiltGhosts");
+  static const PetscLogEvent event = log_event("SiltGhosts");
   const Logged logged(event);
   const int width = motion_width_ + store.columns.ghost_width(false);
   requests_.clear();

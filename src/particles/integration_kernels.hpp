@@ -14,13 +14,44 @@ SILT_INLINE double scalar_product(const Quad& a, const Quad& b) {
   return c[0] + c[1] + c[2];
 }
 
-template <bool correct, bool drift, bool fluid, bool turning>
+/// The drift of a particle that nothing but gravity acts on, with the bits of the general one; its spin stays.
+SILT_INLINE void move_freely(Integration& step, int p, double& largest, double& check) {
+  Motion& motion = step.motion[p];
+  const double h = step.dt;
+  const Quad move = quad(step.move), acceleration = quad(step.gravity) * move;
+  const Quad velocity = quad(motion.velocity), before = quad(motion.position);
+  const Quad position = before + (every(h) * move) * velocity + every(step.second) * acceleration;
+  *reinterpret_cast<Quad*>(motion.position) = position;
+  *reinterpret_cast<Quad*>(motion.velocity) = velocity + every(h) * acceleration;
+  if (step.orientation) {
+    const Quad spin = quad(motion.spin);
+    turn_by(step.orientation[p], h * spin[0], h * spin[1], h * spin[2]);
+  }
+  const Quad moved = position - before;
+  const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
+  largest = largest > square ? largest : square;
+  check += square;
+}
+
+template <bool correct, bool drift, bool fluid, bool turning, bool sparse>
 void integrate_all(Integration& step) {
   const double h = step.dt;
   const Quad move = quad(step.move), turn = quad(step.turn), gravity = quad(step.gravity);
   double largest = 0, check = 0;
   for (int p = 0; p < step.count; ++p) {
     Motion& motion = step.motion[p];
+    if constexpr (sparse) {
+      // The loads of the few that have some lie far apart, where the processor does not foresee them.
+      constexpr int ahead = 24;
+      if (const int next = p + ahead; next < step.count && (step.loaded[next] | step.loaded_before[next])) {
+        __builtin_prefetch(&step.present[next], 1);
+        __builtin_prefetch(&step.previous[next], 1);
+      }
+      if (!(step.loaded[p] | step.loaded_before[p])) {
+        if constexpr (drift) move_freely(step, p, largest, check);
+        continue;
+      }
+    }
     Quad velocity = quad(motion.velocity), spin = quad(motion.spin);
     const double inverse_mass = motion.inverse_mass;
     const double inverse_inertia = 2.5 * inverse_mass / (motion.radius * motion.radius);
@@ -101,22 +132,24 @@ void integrate_all(Integration& step) {
   step.check = check;
 }
 
-template <bool fluid, bool turning>
+template <bool fluid, bool turning, bool sparse>
 SILT_INLINE void choose_pass(Integration& step) {
   if (step.correct && step.drift)
-    integrate_all<true, true, fluid, turning>(step);
+    integrate_all<true, true, fluid, turning, sparse>(step);
   else if (step.correct)
-    integrate_all<true, false, fluid, turning>(step);
+    integrate_all<true, false, fluid, turning, sparse>(step);
   else
-    integrate_all<false, true, fluid, turning>(step);
+    integrate_all<false, true, fluid, turning, sparse>(step);
 }
 void integrate(Integration& step) {
   if (step.turning)
-    choose_pass<true, true>(step);
+    choose_pass<true, true, false>(step);
   else if (step.drag)
-    choose_pass<true, false>(step);
+    choose_pass<true, false, false>(step);
+  else if (step.loaded && step.loaded_before)
+    choose_pass<false, false, true>(step);
   else
-    choose_pass<false, false>(step);
+    choose_pass<false, false, false>(step);
 }
 
 }  // namespace SILT_ISA

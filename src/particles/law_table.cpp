@@ -26,10 +26,10 @@ class LedPair {
       store_.motion[p].radius = radius;
       store_.motion[p].inverse_mass = 1 / mass;
     }
-    store_.place_dummies();
+    store_.place_padding();
     const std::vector<double> history(laws.history_components() + 1, 0.0);
     lists_.add_contact(0, 1, history.data(), 1);
-    lists_.pad(store_.dummy());
+    lists_.pad(store_.padding());
   }
 
   /// Load on the one particle after a step: it is above the other by the gap, nears it with the speed `approach`, slips

@@ -8,13 +8,13 @@
 
 namespace silt {
 
-/// The fixed part of a travelling particle; its columns and its rows of contact memory follow it.
+/// The fixed part of a travelling particle; its fluid action (where there is one), its columns and its rows of contact
+/// memory follow it.
 struct Migration::Packet {
   std::int64_t id;
   Motion motion;
   Load carried;
-  FluidAction action;
-  int cell, contact_rows, wall_rows;
+  int cell, actions, contact_rows, wall_rows;
 };
 
 namespace {
@@ -62,16 +62,31 @@ void Migration::exchange(std::vector<std::vector<char>>& outgoing, std::vector<c
 }
 
 bool Migration::all_at_home(Store& store) {
-  std::vector<Place> place(store.owned);
+  std::vector<int> cell(store.owned);
   bool away = false;
-  for (int p = 0; p < store.owned; ++p) {
-    place[p] = locator_.find(store.motion[p].position, store.cell[p]);
+  for (int p = 0; p < store.owned && !away; ++p) {
+    const Place place = locator_.find(store.motion[p].position, store.cell[p]);
     // A wrap moves the particle by a period, and with it the frame its neighbours' lists were built in.
-    away |= !place[p].inside() || place[p].wrap != std::array<int, 3>{0, 0, 0};
+    away = !place.inside() || place.wrap != std::array<int, 3>{0, 0, 0};
+    cell[p] = place.cell;
   }
   if (mpi_any(away)) return false;
-  for (int p = 0; p < store.owned; ++p) store.cell[p] = place[p].cell;
+  store.cell.swap(cell);
   return true;
+}
+
+bool Migration::any_away(Store& store) {
+  away_.clear();
+  for (int p = 0; p < store.owned; ++p) {
+    const Place place = locator_.find(store.motion[p].position, store.cell[p]);
+    if (place.inside()) {
+      store.cell[p] = place.cell;
+      wrap(locator_, place, store.motion[p]);
+    } else {
+      away_.push_back({p, place});
+    }
+  }
+  return mpi_any(!away_.empty());
 }
 
 std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleRows& contacts, ParticleRows& walls) {
@@ -90,21 +105,13 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
   };
   std::vector<Traveller> lost_sight;  // neither here nor surely on one other rank
   std::vector<std::vector<char>> outgoing(size);
-  std::vector<int> staying;
-  staying.reserve(store.owned);
   std::vector<double> row(store.columns.width());
-  for (int p = 0; p < store.owned; ++p) {
-    const Place place = locator_.find(store.motion[p].position, store.cell[p]);
-    if (place.inside()) {
-      store.cell[p] = place.cell;
-      wrap(locator_, place, store.motion[p]);
-      staying.push_back(p);
-      continue;
-    }
+  for (const auto& [p, place] : away_) {
     Traveller traveller{{}, place};
-    const Packet packet{store.id[p],   store.motion[p],  carried[p],   store.action[p],
-                        store.cell[p], contacts.rows(p), walls.rows(p)};
+    const Packet packet{store.id[p],    store.motion[p],  carried[p],   store.cell[p],
+                        store.acted_on, contacts.rows(p), walls.rows(p)};
     put(traveller.bytes, &packet, 1);
+    if (store.acted_on) put(traveller.bytes, &store.action[p], 1);
     store.columns.gather(p, row.data());
     put(traveller.bytes, row.data(), row.size());
     put(traveller.bytes, contacts.row(contacts.start[p]),
@@ -115,13 +122,19 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
     else
       lost_sight.push_back(std::move(traveller));
   }
-  const bool moved = mpi_any(static_cast<int>(staying.size()) < store.owned);
-  if (!moved) return {};
-
-  if (static_cast<int>(staying.size()) < store.owned) {
+  if (!away_.empty()) {
+    std::vector<int> staying;
+    staying.reserve(store.owned);
+    auto next = away_.begin();
+    for (int p = 0; p < store.owned; ++p)
+      if (next != away_.end() && next->particle == p)
+        ++next;
+      else
+        staying.push_back(p);
     store.reorder(staying, carried);
     contacts.reorder(staying);
     walls.reorder(staying);
+    away_.clear();
   }
 
   std::vector<char> incoming;
@@ -131,10 +144,10 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
     for (std::size_t at = 0; at < incoming.size();) {
       Packet packet;
       std::memcpy(&packet, incoming.data() + at, sizeof packet);
+      const std::size_t head = sizeof packet + packet.actions * sizeof(FluidAction);
       const std::size_t bytes =
-          sizeof packet +
-          sizeof(double) * (row.size() + static_cast<std::size_t>(packet.contact_rows) * contacts.width +
-                            static_cast<std::size_t>(packet.wall_rows) * walls.width);
+          head + sizeof(double) * (row.size() + static_cast<std::size_t>(packet.contact_rows) * contacts.width +
+                                   static_cast<std::size_t>(packet.wall_rows) * walls.width);
       // What settle() said is final, also where a tie would send the particle on.
       const Place place = settled ? locator_.held(vec3(packet.motion.position)) : locator_.find(packet.motion.position);
       if (place.inside()) {
@@ -146,9 +159,11 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
         carried[p] = packet.carried;
         store.id.push_back(packet.id);
         store.cell.push_back(place.cell);
-        store.action.push_back(packet.action);
-        std::vector<double> rows((bytes - sizeof packet) / sizeof(double));
-        take(incoming.data() + at + sizeof packet, rows);
+        if (packet.actions) store.want_actions();
+        if (store.acted_on) store.action.resize(store.owned);
+        if (packet.actions) std::memcpy(&store.action[p], incoming.data() + at + sizeof packet, sizeof(FluidAction));
+        std::vector<double> rows((bytes - head) / sizeof(double));
+        take(incoming.data() + at + head, rows);
         store.columns.scatter(p, rows.data());
         contacts.append(rows.data() + row.size(), packet.contact_rows);
         walls.append(rows.data() + row.size() + static_cast<std::size_t>(packet.contact_rows) * contacts.width,
@@ -174,9 +189,11 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
     if (places[k].state == Place::State::boundary) {
       const Packet packet = lost_sight[k].packet();
       const Place& first = lost_sight[k].place;
-      take(lost_sight[k].bytes.data() + sizeof packet, row);
+      FluidAction action;
+      if (packet.actions) std::memcpy(&action, lost_sight[k].bytes.data() + sizeof packet, sizeof action);
+      take(lost_sight[k].bytes.data() + sizeof packet + packet.actions * sizeof action, row);
       const int boundary = first.state == Place::State::boundary ? first.boundary : places[k].boundary;
-      gone.push_back({packet.id, packet.motion, packet.carried, packet.action, packet.cell, boundary, row});
+      gone.push_back({packet.id, packet.motion, packet.carried, action, packet.cell, boundary, row});
     } else {
       const int rank = places[k].inside() ? mpi_rank() : places[k].rank;
       put(outgoing[rank], lost_sight[k].bytes.data(), lost_sight[k].bytes.size());

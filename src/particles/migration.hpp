@@ -26,8 +26,11 @@ class Migration {
  public:
   Migration(const Mesh& mesh, MPI_Comm communicator) : locator_(mesh), communicator_(communicator) {}
 
-  /// Sets Store::cell. Particles that left the domain are taken out of the store and returned. Ghosts are forgotten.
-  /// `carried`: the load that must move along. Collective.
+  /// Sets Store::cell and wraps the positions of the particles that are still on this rank; whether any particle of any
+  /// rank is not, so that run() must follow. Collective.
+  bool any_away(Store& store);
+  /// Particles that left the domain are taken out of the store and returned. Ghosts are forgotten. `carried`: the load
+  /// that must move along. After any_away(), of which nothing needs to be true. Collective.
   std::vector<Gone> run(Store& store, Aligned<Load>& carried, ParticleRows& contacts, ParticleRows& walls);
 
   /// Whether all owned particles are still in local cells; updates their cells and wraps their positions only then.
@@ -42,6 +45,11 @@ class Migration {
 
   Locator locator_;
   MPI_Comm communicator_;
+  struct Away {
+    int particle;
+    Place place;
+  };
+  std::vector<Away> away_;  ///< ascending
 };
 
 }  // namespace silt

@@ -60,6 +60,14 @@ int CellGrid::neighbours(int cell, Run* run) const {
   return runs;
 }
 
+int CellGrid::later_neighbours(int cell, Run* run) const {
+  const int row = count_[0], layer = count_[0] * count_[1];
+  run[0] = {cell, cell + 1};
+  run[1] = {cell + row - 1, cell + row + 1};
+  for (int y = -1; y <= 1; ++y) run[3 + y] = {cell + layer + y * row - 1, cell + layer + y * row + 1};
+  return 5;
+}
+
 std::vector<int> order_along(const CellGrid& grid, const Store& store) {
   std::vector<int> cell(store.owned), start(grid.cells() + 1, 0), order(store.owned);
   for (int p = 0; p < store.owned; ++p) {
@@ -89,7 +97,7 @@ struct Bins {
     index.resize(n), x.resize(n), y.resize(n), z.resize(n), r.resize(n);
     std::vector<int> at(start.begin(), start.end() - 1);
     for (int k = 0; k < n; ++k) {
-      const int s = at[cell[k]]++;
+      const int s = at[cell[k]]++;  // == k where they are sorted along the cells
       const Motion& motion = store.motion[first + k];
       index[s] = first + k;
       x[s] = motion.position[0], y[s] = motion.position[1], z[s] = motion.position[2], r[s] = motion.radius;
@@ -107,7 +115,6 @@ inline double image(double distance, double length, double inverse) {
 
 void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, const PairReach& pair_reach,
                 const ContactMemory& memory, ContactLists& lists) {
-  lists.clear();
   const double memory_gap = pair_reach.memory_gap, enter_gap = pair_reach.enter_gap, skin = pair_reach.skin;
   const double reach = pair_reach.leave_gap + skin;
   const Bins own(grid, store, 0, store.owned), ghosts(grid, store, store.owned, store.all());
@@ -128,49 +135,63 @@ void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods
     }
     lists.add_candidate(i, j, (std::sqrt(square) - store.motion[a].radius - store.motion[b].radius - enter_gap) / skin);
   };
+  bool across = periods.any;  // whether a nearest image may be another than the particle itself
   const auto search = [&](const Bins& bins, int begin, int end, const Motion& motion, int& n) {
     if (static_cast<int>(found.size()) < n + end - begin)
       found.resize(2 * (n + end - begin)), squares.resize(found.size());
     const double px = motion.position[0], py = motion.position[1], pz = motion.position[2], pr = motion.radius + reach;
-    if (periods.any)
+    int* const number = found.data();
+    double* const square_of = squares.data();
+    int m = n;
+    if (across)
       for (int k = begin; k < end; ++k) {
         const double dx = image(px - bins.x[k], periods.length[0], periods.inverse[0]);
         const double dy = image(py - bins.y[k], periods.length[1], periods.inverse[1]);
         const double dz = image(pz - bins.z[k], periods.length[2], periods.inverse[2]);
         const double square = dx * dx + dy * dy + dz * dz, cut = pr + bins.r[k];
-        found[n] = k, squares[n] = square;
-        n += square < cut * cut;
+        number[m] = k, square_of[m] = square;
+        m += square < cut * cut;
       }
     else
       for (int k = begin; k < end; ++k) {
         const double dx = px - bins.x[k], dy = py - bins.y[k], dz = pz - bins.z[k];
         const double square = dx * dx + dy * dy + dz * dz, cut = pr + bins.r[k];
-        found[n] = k, squares[n] = square;
-        n += square < cut * cut;
+        number[m] = k, square_of[m] = square;
+        m += square < cut * cut;
       }
+    n = m;
   };
+  // Owned particles are sorted along the cells, so a pair is found from the one that stands first.
   CellGrid::Run run[27];
+  struct Stretch {
+    int begin, end;
+  } range[27];
   for (int c = 0; c < grid.cells(); ++c) {
     if (own.start[c] == own.start[c + 1]) continue;
-    const int runs = grid.neighbours(c, run);
+    const bool inner = store.ghosts == 0 && grid.inner(c);
+    const int runs = inner ? grid.later_neighbours(c, run) : grid.neighbours(c, run);
+    across = periods.any && !inner;  // positions are wrapped into the domain
+    int ranges = 0, ghost_ranges = 0;
+    for (int r = 0; r < runs; ++r)
+      if (const Stretch one{own.start[run[r].first], own.start[run[r].last + 1]}; one.begin < one.end)
+        range[ranges++] = one;
     for (int s = own.start[c]; s < own.start[c + 1]; ++s) {
-      const int p = own.index[s];  // == s: owned particles are sorted along the grid
       int n = 0;
-      for (int r = 0; r < runs; ++r) {
-        const int begin = std::max(own.start[run[r].first], s + 1), end = own.start[run[r].last + 1];
-        if (begin < end) search(own, begin, end, store.motion[p], n);
-      }
-      for (int k = 0; k < n; ++k) remember(p, own.index[found[k]], squares[k]);
-      if (store.ghosts == 0) continue;
-      n = 0;
-      for (int r = 0; r < runs; ++r) {
-        const int begin = ghosts.start[run[r].first], end = ghosts.start[run[r].last + 1];
-        if (begin < end) search(ghosts, begin, end, store.motion[p], n);
-      }
-      for (int k = 0; k < n; ++k) remember(p, ghosts.index[found[k]], squares[k]);
+      for (int r = 0; r < ranges; ++r)
+        if (const int begin = std::max(range[r].begin, s + 1); begin < range[r].end)
+          search(own, begin, range[r].end, store.motion[s], n);
+      for (int k = 0; k < n; ++k) remember(s, found[k], squares[k]);
+    }
+    if (store.ghosts == 0) continue;
+    for (int r = 0; r < runs; ++r)
+      if (const Stretch one{ghosts.start[run[r].first], ghosts.start[run[r].last + 1]}; one.begin < one.end)
+        range[ghost_ranges++] = one;
+    for (int s = own.start[c]; ghost_ranges > 0 && s < own.start[c + 1]; ++s) {
+      int n = 0;
+      for (int r = 0; r < ghost_ranges; ++r) search(ghosts, range[r].begin, range[r].end, store.motion[s], n);
+      for (int k = 0; k < n; ++k) remember(s, ghosts.index[found[k]], squares[k]);
     }
   }
-  lists.sort_candidates();
 }
 
 }  // namespace silt

@@ -29,6 +29,14 @@ class CellGrid {
     int first, last;
   };
   int neighbours(int cell, Run* run) const;  ///< at most 27 runs
+  /// Whether the cell has neighbours on all sides without a wrap.
+  bool inner(int cell) const {
+    const int at[3] = {cell % count_[0], cell / count_[0] % count_[1], cell / (count_[0] * count_[1])};
+    return at[0] > 0 && at[0] < count_[0] - 1 && at[1] > 0 && at[1] < count_[1] - 1 && at[2] > 0 &&
+           at[2] < count_[2] - 1;
+  }
+  /// An inner cell and those of its neighbours that have higher numbers: 5 runs.
+  int later_neighbours(int cell, Run* run) const;
 
  private:
   int count_[3];
@@ -45,8 +53,8 @@ struct PairReach {
   double enter_gap = 0, leave_gap = 0, skin = 0, memory_gap = 0;
 };
 
-/// Fills the lists with all pairs of an owned particle and a particle of higher local index (owned or ghost) nearer
-/// than leave_gap + skin. Requires owned particles sorted along the grid.
+/// Fills the lists, which are empty, with all pairs of an owned particle and a particle of higher local index (owned or
+/// ghost) nearer than leave_gap + skin. Requires owned particles sorted along the grid.
 void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, const PairReach& pair_reach,
                 const ContactMemory& memory, ContactLists& lists);
 

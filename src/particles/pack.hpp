@@ -136,5 +136,33 @@ SILT_INLINE void rows_of(Quad x, Quad y, Quad z, Quad* row) {
   row[3] = __builtin_shufflevector(t1, t3, 2, 3, 6, 7);
 }
 
+#if SILT_LANES == 8
+/// Turns six columns of eight contacts (force and couple) into the contacts' records of force, 0, couple, 0.
+SILT_INLINE void records_of(const Vector* column, Vector* row) {
+  const Vector zero = {};
+  const auto low = [](Vector a, Vector b) { return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14); };
+  const auto high = [](Vector a, Vector b) { return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15); };
+  for (int odd = 0; odd < 2; ++odd) {
+    const Vector a = odd ? high(column[0], column[1]) : low(column[0], column[1]);
+    const Vector b = odd ? high(column[2], zero) : low(column[2], zero);
+    const Vector c = odd ? high(column[3], column[4]) : low(column[3], column[4]);
+    const Vector d = odd ? high(column[5], zero) : low(column[5], zero);
+    const Vector ab = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
+    const Vector cd = __builtin_shufflevector(c, d, 0, 1, 2, 3, 8, 9, 10, 11);
+    row[odd] = __builtin_shufflevector(ab, cd, 0, 1, 4, 5, 8, 9, 12, 13);
+    row[2 + odd] = __builtin_shufflevector(ab, cd, 2, 3, 6, 7, 10, 11, 14, 15);
+    const Vector ab2 = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+    const Vector cd2 = __builtin_shufflevector(c, d, 4, 5, 6, 7, 12, 13, 14, 15);
+    row[4 + odd] = __builtin_shufflevector(ab2, cd2, 0, 1, 4, 5, 8, 9, 12, 13);
+    row[6 + odd] = __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7, 10, 11, 14, 15);
+  }
+}
+
+/// The sign in the first four lanes, the arm in the others.
+SILT_INLINE Vector force_and_arm(double sign, const double* arm) {
+  return Vector(_mm512_mask_broadcastsd_pd(_mm512_set1_pd(sign), 0xf0, _mm_load_sd(arm)));
+}
+#endif
+
 }  // namespace SILT_ISA
 }  // namespace silt

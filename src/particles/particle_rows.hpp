@@ -19,6 +19,11 @@ struct ParticleRows {
     start.assign(1, 0);
     entries.clear();
   }
+  /// Forgets all, and where it stood.
+  void release() {
+    start = {0};
+    entries = {};
+  }
   /// Gives the next particle `count` rows, copied from `from`.
   void append(const double* from, int count) {
     entries.insert(entries.end(), from, from + static_cast<std::size_t>(count) * width);
@@ -26,6 +31,7 @@ struct ParticleRows {
   }
   /// New particle k gets the rows of old particle order[k].
   void reorder(const std::vector<int>& order) {
+    if (entries.empty()) return start.assign(order.size() + 1, 0);
     ParticleRows sorted(width);
     sorted.start.reserve(order.size() + 1);
     sorted.entries.reserve(entries.size());

@@ -1,5 +1,8 @@
 #include "particles/particles.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <numbers>
 
 #include "base/petsc.hpp"
@@ -47,9 +50,31 @@ bool Particles::has_heat() const { return impl_->heat() != nullptr; }
 double Particles::heat_capacity(int i) const { return impl_->heat()->capacity(impl_->store.motion[i]); }
 int Particles::material(int i) const { return static_cast<int>(impl_->store.motion[i].material); }
 int Particles::cell(int i) const { return impl_->store.cell[i]; }
-FluidAction& Particles::fluid_action(int i) { return impl_->store.action[i]; }
+FluidAction& Particles::fluid_action(int i) {
+  impl_->store.want_actions();
+  return impl_->store.action[i];
+}
 
-std::shared_ptr<const Particles::Snapshot> Particles::snapshot() const { return impl_->snapshot(); }
+std::shared_ptr<const Particles::Snapshot> Particles::snapshot(bool to_repeat) const {
+  return impl_->snapshot(to_repeat);
+}
+double Particles::bytes(const Snapshot* kept) const {
+  double sum = kept ? static_cast<double>(kept->bytes()) : 0;
+  for (const auto& [name, bytes] : impl_->bytes()) sum += static_cast<double>(bytes);
+  return mpi_sum(sum);
+}
+std::string Particles::memory(const Snapshot* kept) const {
+  const double particles = std::max(1.0, static_cast<double>(total()));
+  std::string text = fmt::format("{:.0f} B a particle", bytes(kept) / particles);
+  const char* sign = ": ";
+  const auto add = [&](const std::string& name, std::size_t bytes) {
+    const double each = mpi_sum(static_cast<double>(bytes)) / particles;
+    if (each >= 0.5) text += fmt::format("{}{} {:.0f}", sign, name, each), sign = ", ";
+  };
+  for (const auto& [name, bytes] : impl_->bytes()) add(name, bytes);
+  add("last good state", kept ? kept->bytes() : 0);
+  return text;
+}
 void Particles::restore(const Snapshot& snapshot) { impl_->restore(snapshot); }
 void Particles::save(CheckpointWriter& to) { impl_->save(to); }
 void Particles::load(const CheckpointReader& from, bool elsewhere) { impl_->load(from, elsewhere); }

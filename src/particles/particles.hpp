@@ -114,10 +114,17 @@ class Particles {
   /// The whole state, to return to after a fluid step that failed. restore() must be followed by an advance(). Local /
   /// collective.
   struct Snapshot;
-  std::shared_ptr<const Snapshot> snapshot() const;
+  /// `to_repeat`: a step from it has the same bits again (a copy of the present forces, 64 B a particle); else the
+  /// forces are evaluated anew.
+  std::shared_ptr<const Snapshot> snapshot(bool to_repeat = true) const;
   void restore(const Snapshot& snapshot);
   /// Adds the whole state to a checkpoint: motion, fluid action, contact memory, walls' motion, counters. Collective.
   void save(CheckpointWriter& to);
+  /// "612 B a particle: motion 96, loads 128, ...": memory of the particles' arrays and of a snapshot (may be null)
+  /// over all ranks, as counted by the containers. Collective.
+  std::string memory(const Snapshot* kept = nullptr) const;
+  /// The same sum. B
+  double bytes(const Snapshot* kept = nullptr) const;
   /// Goes on from a checkpoint, on any number of ranks; with that of the run that wrote it, with the same bits.
   /// `elsewhere`: the cells are shared out in another way. Throws UserError for one of other materials, walls or
   /// contact laws. Collective.

@@ -1,5 +1,10 @@
 #include "particles/store.hpp"
 
+#include <algorithm>
+#include <limits>
+
+#include "particles/rearrange.hpp"
+
 namespace silt {
 
 void Store::reserve(int count) {
@@ -7,46 +12,65 @@ void Store::reserve(int count) {
   motion.reserve(n);
   present.reserve(n);
   previous.reserve(n);
-  origin.reserve(n);
   columns.reserve(count);
 }
 
-void Store::place_dummies() {
-  columns.clear(dummy(), dummy() + 2);
+void Store::place_padding() {
+  columns.clear(padding(), padding() + 2);
   // Two points without size, a metre apart: they never touch and stay finite.
   for (int k = 0; k < 2; ++k) {
-    Motion& motion_k = motion[dummy() + k];
+    Motion& motion_k = motion[padding() + k];
     motion_k = Motion{};
     motion_k.position[0] = owned > 0 ? motion[0].position[0] : 0;
     motion_k.position[k] += 1;
     motion_k.radius = 1e-3;
     motion_k.inverse_mass = 1;
     motion_k.material = 0;
-    present[dummy() + k] = previous[dummy() + k] = Load{};
+    present[padding() + k] = previous[padding() + k] = Load{};
   }
 }
 
-void Store::reorder(const std::vector<int>& order, Aligned<Load>& carried) {
-  motion_scratch_.reserve(owned + 2);
-  load_scratch_.reserve(owned + 2);
-  owned = static_cast<int>(order.size());
-  std::vector<std::int64_t> new_id(owned);
-  std::vector<int> new_cell(owned);
-  std::vector<FluidAction> new_action(owned);
-  for (int k = 0; k < owned; ++k) {
-    const int p = order[k];
-    motion_scratch_[k] = motion[p];
-    load_scratch_[k] = carried[p];
-    new_id[k] = id[p];
-    new_cell[k] = cell[p];
-    new_action[k] = action[p];
+void Store::note_origins() {
+  double extent = 0;
+  for (int d = 0; d < 3; ++d) {
+    double lower = owned > 0 ? motion[0].position[d] : 0, upper = lower;
+    for (int p = 1; p < owned; ++p) {
+      lower = std::min(lower, motion[p].position[d]);
+      upper = std::max(upper, motion[p].position[d]);
+    }
+    corner_[d] = lower;
+    extent = std::max(extent, upper - lower);
   }
-  motion.swap(motion_scratch_);
-  carried.swap(load_scratch_);
-  id.swap(new_id);
-  cell.swap(new_cell);
-  action.swap(new_action);
-  columns.reorder(order);
+  rounding_ = 2 * extent * std::numeric_limits<float>::epsilon();
+  origin_.resize(3 * static_cast<std::size_t>(owned));
+  for (int p = 0; p < owned; ++p)
+    for (int d = 0; d < 3; ++d)
+      origin_[3 * static_cast<std::size_t>(p) + d] = static_cast<float>(motion[p].position[d] - corner_[d]);
+}
+
+std::vector<std::pair<std::string, std::size_t>> Store::bytes() const {
+  return {{"motion", motion.capacity() * sizeof(Motion)},
+          {"loads", (present.capacity() + previous.capacity()) * sizeof(Load)},
+          {"fluid", action.capacity() * sizeof(FluidAction) + drag.capacity() * sizeof(DragStep) +
+                        turning.capacity() * sizeof(TurnStep)},
+          {"ids, cells, origins",
+           id.capacity() * sizeof(id[0]) + cell.capacity() * sizeof(int) + origin_.capacity() * sizeof(float)},
+          {"columns", columns.bytes()}};
+}
+
+void Store::reorder(const std::vector<int>& order, Aligned<Load>& carried) {
+  const Rearrangement rearrange(order, owned);
+  owned = static_cast<int>(order.size());
+  if (rearrange.nothing_moves()) return;
+  rearrange.apply(motion.data());
+  rearrange.apply(carried.data());
+  rearrange.apply(id.data());
+  rearrange.apply(cell.data());
+  if (acted_on) rearrange.apply(action.data());
+  id.resize(owned);
+  cell.resize(owned);
+  if (acted_on) action.resize(owned);
+  columns.reorder(rearrange);
 }
 
 }  // namespace silt

@@ -1,5 +1,8 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "particles/aligned.hpp"
@@ -8,39 +11,53 @@
 
 namespace silt {
 
-/// Four doubles of a particle, aligned.
-struct alignas(32) Row {
-  double entry[4];
-};
-
-/// The particles of this rank as the step loops see them: owned first, then ghosts, then two dummies that pad the lists
-/// of pairs to whole packs.
+/// The particles of this rank as the step loops see them: owned first, then ghosts, then two that pad the lists of
+/// pairs to whole packs.
 struct Store {
   int owned = 0, ghosts = 0;
   Aligned<Motion> motion;        ///< [owned + ghosts + 2]
   Aligned<Load> present;         ///< [owned + ghosts + 2] contact forces being summed up, or at the present positions
   Aligned<Load> previous;        ///< contact forces of the step before
-  Aligned<Row> origin;           ///< [owned] m, positions at the last rebuild
   Aligned<DragStep> drag;        ///< [owned] only while a fluid acts
   Aligned<TurnStep> turning;     ///< [owned] only while a fluid holds the spins
   std::vector<std::int64_t> id;  ///< [owned + ghosts]
   std::vector<int> cell;         ///< [owned]
-  std::vector<FluidAction> action;  ///< [owned]
+  bool acted_on = false;         ///< a fluid or who plays it has asked for the actions
+  std::vector<FluidAction> action;  ///< [owned] where acted_on, else empty
   Columns columns;                  ///< [owned + ghosts] what models ask for
 
   int all() const { return owned + ghosts; }
-  int dummy() const { return owned + ghosts; }
-  /// Makes room for `count` particles and the dummies.
+  int padding() const { return owned + ghosts; }
+  /// Makes room for `count` particles and the padding.
   void reserve(int count);
-  /// Writes the dummy records behind the ghosts.
-  void place_dummies();
-  /// New owned particle k was order[k]; those not in the order are forgotten. Ghosts are lost. `carried` is the load
-  /// that stays meaningful.
+  /// Writes the padding particles behind the ghosts.
+  void place_padding();
+  /// Gives every particle a FluidAction from now on.
+  void want_actions() {
+    if (acted_on) return;
+    acted_on = true;
+    action.resize(owned);
+  }
+  /// Remembers where the particles are, for way().
+  void note_origins();
+  /// An upper bound of the distance from there, not far above it. m
+  double way(int p) const {
+    double square = 0;
+    for (int d = 0; d < 3; ++d) {
+      const double moved = motion[p].position[d] - corner_[d] - origin_[3 * static_cast<std::size_t>(p) + d];
+      square += moved * moved;
+    }
+    return std::sqrt(square) + rounding_;
+  }
+  /// What the arrays take, by name. B
+  std::vector<std::pair<std::string, std::size_t>> bytes() const;
+  /// New owned particle k was order[k]; those not in the order, which then ascends, are forgotten. Ghosts are lost.
+  /// `carried` is the load that stays meaningful.
   void reorder(const std::vector<int>& order, Aligned<Load>& carried);
 
  private:
-  Aligned<Motion> motion_scratch_;
-  Aligned<Load> load_scratch_;
+  std::vector<float> origin_;  ///< [owned][3] m, from corner_
+  double corner_[3] = {0, 0, 0}, rounding_ = 0;
 };
 
 }  // namespace silt

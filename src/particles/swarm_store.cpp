@@ -45,9 +45,11 @@ DM SwarmStore::refresh(const Mesh& mesh, const Store& store) {
   fill<PetscReal>(swarm_, "spin", n, 3, [&](int p, int d) { return store.motion[p].spin[d]; });
   fill<PetscReal>(swarm_, "radius", n, 1, [&](int p, int) { return store.motion[p].radius; });
   fill<PetscReal>(swarm_, "mass", n, 1, [&](int p, int) { return 1 / store.motion[p].inverse_mass; });
-  fill<PetscReal>(swarm_, "fluid_velocity", n, 3, [&](int p, int d) { return store.action[p].velocity[d]; });
-  fill<PetscReal>(swarm_, "exchange", n, 1, [&](int p, int) { return store.action[p].exchange; });
-  fill<PetscReal>(swarm_, "drag_impulse", n, 3, [&](int p, int d) { return store.action[p].impulse[d]; });
+  const FluidAction none;
+  const auto action = [&](int p) -> const FluidAction& { return store.acted_on ? store.action[p] : none; };
+  fill<PetscReal>(swarm_, "fluid_velocity", n, 3, [&](int p, int d) { return action(p).velocity[d]; });
+  fill<PetscReal>(swarm_, "exchange", n, 1, [&](int p, int) { return action(p).exchange; });
+  fill<PetscReal>(swarm_, "drag_impulse", n, 3, [&](int p, int d) { return action(p).impulse[d]; });
   const int rank = mpi_rank();
   fill<PetscInt>(swarm_, DMSwarmField_rank, n, 1, [&](int, int) { return rank; });
   return swarm_;

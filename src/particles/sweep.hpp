@@ -31,7 +31,7 @@ struct LawSetup {
   double leave_gap = 0;  ///< m, and leaves them when they are further apart than this
 };
 
-/// Touching pairs: indices, and the history as one array per component. Padded to whole packs with the dummy pair.
+/// Touching pairs: indices, and the history as one array per component. Padded to whole packs with the padding pair.
 struct PairArrays {
   int count = 0;
   const int *i = nullptr, *j = nullptr;
@@ -58,10 +58,12 @@ struct PairSweep {
   Periods periods;
   double dt = 0;
   double deepest_share = 1;  ///< overlap allowed, as a share of the smaller radius
-  int* leaving = nullptr;    ///< out: places of pairs that no longer touch, ascending
-  int leaving_count = 0;     ///< out
-  int too_deep = -1;         ///< out: place of a pair with too large an overlap, or -1
-  double* trace = nullptr;   ///< out: [trace_width][pairs.stride], null: not wanted; needs laws.traced
+  bool scattered = false;    ///< neighbours in the list are not neighbours in memory: few contacts, far apart
+  /// out: a bit for each pair, set where it no longer touches; [(count + 7)/8], zero before
+  unsigned char* leaving = nullptr;
+  int leaving_count = 0;    ///< out: how many
+  int too_deep = -1;        ///< out: place of a pair with too large an overlap, or -1
+  double* trace = nullptr;  ///< out: [trace_width][pairs.stride], null: not wanted; needs laws.traced
 };
 
 struct CandidateSweep {
@@ -69,9 +71,8 @@ struct CandidateSweep {
   int count = 0;  ///< padded as PairArrays
   const int *i = nullptr, *j = nullptr;
   Periods periods;
-  double enter_gap = 0;     ///< m, a contact begins when the surfaces are nearer than this
-  int* entering = nullptr;  ///< out: places of pairs that now touch, ascending
-  int entering_count = 0;   ///< out
+  double enter_gap = 0;   ///< m, a contact begins when the surfaces are nearer than this
+  double* gap = nullptr;  ///< out: m, what each pair lacks to a contact, negative where it is one; padded as the pairs
 };
 
 /// Contacts with walls: the points the geometry gave, with history as for pairs.
@@ -116,8 +117,10 @@ struct alignas(64) TurnStep {
 struct Integration {
   Motion* motion = nullptr;
   Load *present = nullptr, *previous = nullptr;  ///< forces at the present positions; those of the step before
-  DragStep* drag = nullptr;                      ///< null: no fluid
-  const TurnStep* turning = nullptr;             ///< null: no viscous torque; only with drag
+  /// Not 0 where the present or the previous load may be; null: anywhere.
+  const unsigned char *loaded = nullptr, *loaded_before = nullptr;
+  DragStep* drag = nullptr;           ///< null: no fluid
+  const TurnStep* turning = nullptr;  ///< null: no viscous torque; only with drag
   int count = 0;
   double dt = 0;
   double second = 0;                   ///< s2, how far a unit acceleration moves a particle without drag

@@ -16,13 +16,13 @@ SILT_INLINE void nearest_image(const Periods& periods, Pack* distance) {
     distance[d] = distance[d] - Pack(periods.length[d]) * nearest(distance[d] * Pack(periods.inverse[d]));
 }
 
-/// Kinematics of `count` pairs, once for particles, ghosts and periodic images.
-template <bool periodic, bool extended, bool several>
-SILT_INLINE void pair_kinematics(PairSweep& sweep, Block& block, int first, int count) {
+/// What the motions of `count` pairs give without a root or a division: the distance (in block.normal), the relative
+/// velocity (block.slip), both radii (block.arm_i, arm_j) and the sum of the inverse masses (block.effective_mass). The
+/// long latencies have a loop of their own, which the processor can overlap over many contacts.
+template <bool periodic, bool extended>
+SILT_INLINE void gather_pairs(const PairSweep& sweep, Block& block, int first, int count) {
   const double* motion = reinterpret_cast<const double*>(sweep.motion);
   constexpr int stride = sizeof(Motion) / sizeof(double);
-  const Pack half(0.5), one(1.0);
-  const Pack leave(-sweep.laws.leave_gap), deepest(sweep.deepest_share), materials(sweep.laws.materials);
   for (int o = 0; o < count; o += lanes) {
     const int k = first + o;
     const int *i = sweep.pairs.i + k, *j = sweep.pairs.j + k;
@@ -32,61 +32,138 @@ SILT_INLINE void pair_kinematics(PairSweep& sweep, Block& block, int first, int 
         __builtin_prefetch(ahead);
         __builtin_prefetch(reinterpret_cast<const char*>(ahead) + 64);
         __builtin_prefetch(&sweep.load[j[block_size + q]], 1);
+        if (sweep.scattered) {
+          __builtin_prefetch(&sweep.motion[i[block_size + q]]);
+          __builtin_prefetch(reinterpret_cast<const char*>(&sweep.motion[i[block_size + q]]) + 64);
+          __builtin_prefetch(&sweep.load[i[block_size + q]], 1);
+        }
       }
-    Pack xi[4], xj[4], vi[4], vj[4], wi[4], wj[4], distance[3];
+    Pack xi[4], xj[4], vi[4], vj[4], distance[3];
     load_columns(motion, stride, 0, i, xi);
     load_columns(motion, stride, 0, j, xj);
     for (int d = 0; d < 3; ++d) distance[d] = xi[d] - xj[d];
     if constexpr (periodic) nearest_image(sweep.periods, distance);
-    const Pack r = sqrt(dot(distance, distance));
     load_columns(motion, stride, 4, i, vi);
     load_columns(motion, stride, 4, j, vj);
+    for (int d = 0; d < 3; ++d) {
+      store(&block.normal[d][o], distance[d]);
+      store(&block.slip[d][o], vi[d] - vj[d]);
+    }
+    store(&block.arm_i[o], xi[3]);
+    store(&block.arm_j[o], xj[3]);
+    store(&block.effective_mass[o], vi[3] + vj[3]);
+    if constexpr (extended) {
+      const Pack si = xi[3] * xi[3], sj = xj[3] * xj[3];
+      store(&block.rolling_inertia[o], Pack(1.4) * si * sj / (vi[3] * sj + vj[3] * si));
+    }
+  }
+}
+
+/// Normals, overlaps and effective sizes of the gathered pairs.
+template <bool extended>
+SILT_INLINE void measure_pairs(PairSweep& sweep, Block& block, int first, int count) {
+  const Pack half(0.5), one(1.0);
+  const Pack leave(-sweep.laws.leave_gap), deepest(sweep.deepest_share);
+  for (int o = 0; o < count; o += lanes) {
+    Pack distance[3];
+    for (int d = 0; d < 3; ++d) distance[d] = load(&block.normal[d][o]);
+    const Pack radius_i = load(&block.arm_i[o]), radius_j = load(&block.arm_j[o]);
+    const Pack r = sqrt(dot(distance, distance));
     // One division serves 1/r, R_eff and m_eff.
-    const Pack radii = xi[3] + xj[3], inverse_masses = vi[3] + vj[3];
+    const Pack radii = radius_i + radius_j, inverse_masses = load(&block.effective_mass[o]);
     const Pack inverse = one / (r * radii * inverse_masses);
     const Pack inverse_r = inverse * radii * inverse_masses;
-    Contact<Pack> contact;
-    contact.effective_radius = xi[3] * xj[3] * (inverse * r * inverse_masses);
-    contact.effective_mass = inverse * r * radii;
-    contact.overlap = radii - r;
-    const Pack give = half * contact.overlap;
-    const Pack arm_i = xi[3] - give, arm_j = xj[3] - give;
+    for (int d = 0; d < 3; ++d) store(&block.normal[d][o], distance[d] * inverse_r);
+    const Pack overlap = radii - r, give = half * overlap;
+    store(&block.effective_radius[o], radius_i * radius_j * (inverse * r * inverse_masses));
+    store(&block.effective_mass[o], inverse * r * radii);
+    store(&block.overlap[o], overlap);
+    store(&block.arm_i[o], radius_i - give);
+    store(&block.arm_j[o], radius_j - give);
+    if constexpr (extended) {
+      store(&block.radius[o], radius_i);
+      store(&block.distance[o], r);
+    }
+    const unsigned apart = lane_bits(overlap <= leave);
+    const unsigned deep = lane_bits(overlap > deepest * smaller(radius_i, radius_j));
+    if (apart | deep) {
+      const int k = first + o;
+      for (int q = 0; q < lanes && k + q < sweep.pairs.count; ++q) {
+        if (apart >> q & 1)
+          sweep.leaving[(k + q) / 8] |= static_cast<unsigned char>(1 << (k + q) % 8), ++sweep.leaving_count;
+        if (deep >> q & 1) sweep.too_deep = k + q;
+      }
+    }
+  }
+}
+
+/// Approach and slip at the contact points, from the relative velocity and the spins.
+template <bool extended, bool several>
+SILT_INLINE void slip_of_pairs(const PairSweep& sweep, Block& block, int first, int count) {
+  const double* motion = reinterpret_cast<const double*>(sweep.motion);
+  constexpr int stride = sizeof(Motion) / sizeof(double);
+  const Pack materials(sweep.laws.materials);
+  for (int o = 0; o < count; o += lanes) {
+    const int *i = sweep.pairs.i + first + o, *j = sweep.pairs.j + first + o;
+    Pack wi[4], wj[4], velocity[3], rolling[3];
     load_columns(motion, stride, 8, i, wi);
     load_columns(motion, stride, 8, j, wj);
-    Pack velocity[3], rolling[3];
+    const Pack arm_i = load(&block.arm_i[o]), arm_j = load(&block.arm_j[o]);
+    Contact<Pack> contact;
     for (int d = 0; d < 3; ++d) {
-      contact.normal[d] = distance[d] * inverse_r;
-      velocity[d] = vi[d] - vj[d];
+      contact.normal[d] = load(&block.normal[d][o]);
+      velocity[d] = load(&block.slip[d][o]);
       rolling[d] = arm_i * wi[d] + arm_j * wj[d];
     }
     set_relative_motion(contact, velocity, rolling);
     for (int d = 0; d < 3; ++d) {
-      store(&block.normal[d][o], contact.normal[d]);
       store(&block.slip[d][o], contact.slip[d]);
       if constexpr (extended) store(&block.spin[d][o], wi[d] - wj[d]);
     }
-    if constexpr (extended) {
-      store(&block.radius[o], xi[3]);
-      store(&block.distance[o], r);
-      store(&block.rolling_inertia[o], Pack(1.4) / (vi[3] / (xi[3] * xi[3]) + vj[3] / (xj[3] * xj[3])));
-    }
-    store(&block.overlap[o], contact.overlap);
     store(&block.approach[o], contact.approach);
-    store(&block.effective_radius[o], contact.effective_radius);
-    store(&block.effective_mass[o], contact.effective_mass);
-    store(&block.arm_i[o], arm_i);
-    store(&block.arm_j[o], arm_j);
     if constexpr (several) store(&block.pair[o], wi[3] * materials + wj[3]);
-    const unsigned apart = lane_bits(contact.overlap <= leave);
-    const unsigned deep = lane_bits(contact.overlap > deepest * smaller(xi[3], xj[3]));
-    if (apart | deep)
-      for (int q = 0; q < lanes && k + q < sweep.pairs.count; ++q) {
-        if (apart >> q & 1) sweep.leaving[sweep.leaving_count++] = k + q;
-        if (deep >> q & 1) sweep.too_deep = k + q;
-      }
   }
 }
 
+/// Kinematics of `count` pairs, once for particles, ghosts and periodic images.
+template <bool periodic, bool extended, bool several>
+SILT_INLINE void pair_kinematics(PairSweep& sweep, Block& block, int first, int count) {
+  gather_pairs<periodic, extended>(sweep, block, first, count);
+  measure_pairs<extended>(sweep, block, first, count);
+  slip_of_pairs<extended, several>(sweep, block, first, count);
+}
+
+#if SILT_LANES == 8
+/// Adds the contacts' forces to both partners, force and torque in one record; one contact after the other, as a
+/// particle may occur more than once.
+template <bool extended>
+SILT_INLINE void pair_scatter(const PairSweep& sweep, const Block& block, int first, int count) {
+  for (int o = 0; o < count; o += 8) {
+    Vector column[6], row[8];
+    const Pack nx = load(&block.normal[0][o]), ny = load(&block.normal[1][o]), nz = load(&block.normal[2][o]);
+    const Pack fx = load(&block.force[0][o]), fy = load(&block.force[1][o]), fz = load(&block.force[2][o]);
+    column[0] = fx.v, column[1] = fy.v, column[2] = fz.v;
+    // Torque of the force at the contact point, -arm n from the centre of i: arm F x n.
+    column[3] = (fy * nz - fz * ny).v, column[4] = (fz * nx - fx * nz).v, column[5] = (fx * ny - fy * nx).v;
+    records_of(column, row);
+    for (int q = 0; q < 8; ++q) {
+      Vector& on_i = *reinterpret_cast<Vector*>(&sweep.load[sweep.pairs.i[first + o + q]]);
+      Vector& on_j = *reinterpret_cast<Vector*>(&sweep.load[sweep.pairs.j[first + o + q]]);
+      on_i += row[q] * force_and_arm(1, &block.arm_i[o + q]);
+      on_j += row[q] * force_and_arm(-1, &block.arm_j[o + q]);
+    }
+    if constexpr (extended) {
+      column[0] = column[1] = column[2] = Vector{};
+      for (int d = 0; d < 3; ++d) column[3 + d] = load(&block.torque[d][o]).v;
+      records_of(column, row);
+      for (int q = 0; q < 8; ++q) {
+        *reinterpret_cast<Vector*>(&sweep.load[sweep.pairs.i[first + o + q]]) += row[q];
+        *reinterpret_cast<Vector*>(&sweep.load[sweep.pairs.j[first + o + q]]) -= row[q];
+      }
+    }
+  }
+}
+#else
 /// Adds the contacts' forces to both partners; one contact after the other, as a particle may occur more than once.
 template <bool extended>
 SILT_INLINE void pair_scatter(const PairSweep& sweep, const Block& block, int first, int count) {
@@ -118,6 +195,7 @@ SILT_INLINE void pair_scatter(const PairSweep& sweep, const Block& block, int fi
     }
   }
 }
+#endif
 
 /// Leaves behind what the contacts of the block exert.
 template <bool extended>
@@ -176,17 +254,10 @@ SILT_INLINE void candidates(CandidateSweep& sweep) {
     load_columns(motion, stride, 0, j, xj);
     for (int d = 0; d < 3; ++d) distance[d] = xi[d] - xj[d];
     if constexpr (periodic) nearest_image(sweep.periods, distance);
-    const Pack reach = xi[3] + xj[3] + enter;
-    unsigned near = lane_bits(dot(distance, distance) < reach * reach);
-    if (near)
-      for (int q = 0; q < lanes && k + q < sweep.count; ++q)
-        if (near >> q & 1) sweep.entering[sweep.entering_count++] = k + q;
+    store(&sweep.gap[k], sqrt(dot(distance, distance)) - (xi[3] + xj[3] + enter));
   }
 }
-void candidate_sweep(CandidateSweep& sweep) {
-  sweep.entering_count = 0;
-  sweep.periods.any ? candidates<true>(sweep) : candidates<false>(sweep);
-}
+void candidate_sweep(CandidateSweep& sweep) { sweep.periods.any ? candidates<true>(sweep) : candidates<false>(sweep); }
 
 /// Contacts with walls: the same laws, filled one by one.
 void wall_sweep(WallSweep& sweep) {

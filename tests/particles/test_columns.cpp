@@ -40,7 +40,7 @@ TEST_CASE("What particles carry follows them through collisions, sorting and mig
       *columns.row(own, p) = static_cast<double>(engine.store.id[p]);
     }
     engine.advance(n * 2e-3, 2e-3);
-    if (n == 4) saved = engine.snapshot();
+    if (n == 4) saved = engine.snapshot(true);
     for (int p = 0; p < engine.store.all(); ++p) {
       const auto id = engine.store.id[p];
       for (int d = 0; d < 3; ++d) REQUIRE(columns.row(home, p)[d] == seeds[id].position[d]);

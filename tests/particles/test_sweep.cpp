@@ -48,14 +48,14 @@ void compare(const LawCase& setup, const char* instructions, bool several, unsig
       vec3(m.position) = vec3(other.position) + (m.radius + other.radius - overlap) * n;
     }
   }
-  store.place_dummies();
+  store.place_padding();
   ContactLists lists(components);
   std::vector<std::vector<double>> history(count, std::vector<double>(components + 1));
   for (int k = 0; k < count; ++k) {
     for (double& h : history[k]) h = random(-1e-6, 1e-6);
     lists.add_contact(2 * k, 2 * k + 1, history[k].data(), 1);
   }
-  lists.pad(store.dummy());
+  lists.pad(store.padding());
   PairSweep sweep;
   sweep.motion = store.motion.data();
   sweep.load = store.present.data();

@@ -4,15 +4,19 @@
 
 namespace silt {
 
-/// Turns an accumulated displacement into the present tangent plane: its normal part is taken away and its length kept
-/// (to fourth order in the small angle turned in a step).
+/// Takes the normal part `along` of a displacement away and gives it its length back, to fourth order in the small
+/// angle turned in a step; `share` is the square of that part over the square of the whole.
+template <class Real>
+SILT_INLINE void keep_length(Real* spring, const Real* normal, Real along, Real share) {
+  const Real stretch = Real(1.0) + share * (Real(0.5) + Real(0.375) * share);
+  for (int d = 0; d < 3; ++d) spring[d] = stretch * (spring[d] - along * normal[d]);
+}
+
+/// Turns an accumulated displacement into the present tangent plane.
 template <class Real>
 SILT_INLINE void turn_into_plane(Real* spring, const Real* normal) {
   const Real along = dot(spring, normal);
-  const Real square = dot(spring, spring);
-  const Real share = along * along / larger(square, Real(1e-300));
-  const Real stretch = Real(1.0) + share * (Real(0.5) + Real(0.375) * share);
-  for (int d = 0; d < 3; ++d) spring[d] = stretch * (spring[d] - along * normal[d]);
+  keep_length(spring, normal, along, along * along / larger(dot(spring, spring), Real(1e-300)));
 }
 
 /// Where within a step of dt the spring is read: the velocity of a contact is that predicted for the step's end, so a
@@ -37,18 +41,23 @@ SILT_INLINE Real share_of_step(Real least, Real stiffness, Real mass, Real dt) {
 template <class Real>
 SILT_INLINE void limited_spring_dashpot(const Contact<Real>& contact, Real normal_force, Real friction, Real stiffness,
                                         Real damping, Real least_share, Real dt, Real* spring, Real* force) {
-  turn_into_plane(spring, contact.normal);
-  const Real read = dt * share_of_step(least_share, stiffness, contact.effective_mass, dt), rest = dt - read;
+  // Two divisions serve all: the loop over contacts waits for the divider, and for nothing else.
+  const Real zero(0.0), one(1.0), least(1e-100);
+  const Real along = dot(spring, contact.normal), square = larger(dot(spring, spring), least * least);
+  const Real inverse = one / (square * contact.effective_mass);
+  keep_length(spring, contact.normal, along, along * along * contact.effective_mass * inverse);
+  const Real turning = Real(3.5) * stiffness * dt * dt * square * inverse;
+  const Real read = dt * share_of_step(least_share, turning), rest = dt - read;
   Real trial[3];
   for (int d = 0; d < 3; ++d) {
     spring[d] = spring[d] + read * contact.slip[d];
     trial[d] = stiffness * spring[d] + damping * contact.slip[d];
   }
-  const Real zero(0.0), one(1.0), least(1e-300);
-  const Real length = sqrt(dot(trial, trial));
+  const Real length = sqrt(dot(trial, trial)), stiff = larger(stiffness, least);
   const Real limit = friction * larger(normal_force, zero - normal_force);
-  const Real kept = select(length > limit, limit / larger(length, least), one);
-  const Real cut = select(length > limit, (one - kept) / larger(stiffness, least), zero);
+  const Real over = one / (larger(length, least) * stiff);
+  const Real kept = select(length > limit, limit * stiff * over, one);
+  const Real cut = select(length > limit, (length - limit) * over, zero);
   for (int d = 0; d < 3; ++d) {
     force[d] = zero - kept * trial[d];
     spring[d] = spring[d] - cut * trial[d] + rest * contact.slip[d];

@@ -1,0 +1,118 @@
+// Making the lists of neighbours anew: migration, sorting, ghosts, pairs, and when it is time for it.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "base/petsc.hpp"
+#include "particles/engine.hpp"
+#include "particles/log_event.hpp"
+
+namespace silt {
+
+void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
+  static const PetscLogEvent event = log_event("SiltRebuild");
+  const Logged logged(event);
+  ++rebuilds_;
+  if (within_step) adapt_skin();
+  if (fluid_ && within_step) collect_fluid();  // between steps all is collected, and new ones have no drag yet
+  std::string fast;
+  if (within_step)
+    for (int p = 0; p < store.owned && fast.empty(); ++p)
+      if (h * vec3(store.motion[p].velocity).norm() > store.motion[p].radius)
+        fast = fmt::format("a particle moves more than its radius in a step of {:g} s (-particles_fast): {}", h,
+                           describe(p));
+  if (options_.fast == "stop")
+    stop_if_any(fast);
+  else
+    report("warn", fast);
+
+  few_loaded_ = few_loaded_before_ = false;  // the particles get other places
+  const int contacts_before = contacts.contacts();
+  if (migration_.any_away(store)) {
+    if (!detached_) detach();
+    memory_.complete(store.id);
+    const std::vector<Gone> gone = migration_.run(store, carried, memory_.rows, wall_memory_);
+    const long long gone_everywhere = mpi_sum(static_cast<long long>(gone.size()));
+    if (gone_everywhere > 0) {
+      depart(gone, within_step, h);
+      liquid_.forget(store, memory_, gone, communicator_);
+      removed += gone_everywhere;
+      total -= gone_everywhere;
+    }
+  }
+  const long long counted = mpi_sum(static_cast<long long>(store.owned));
+  if (counted != total) throw RunError(fmt::format("{} particles are accounted for, but {} are there", total, counted));
+
+  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();
+  for (int p = 0; p < store.owned; ++p) {
+    const auto position = vec3(store.motion[p].position);
+    lower = p == 0 ? Vec3(position) : lower.cwiseMin(position);
+    upper = p == 0 ? Vec3(position) : upper.cwiseMax(position);
+  }
+  const double gap = laws_.setup().leave_gap;
+  const double reach = 2 * largest_radius_ + gap + skin_;
+  const CellGrid grid(lower, upper, mesh.lower, periods_, reach, store.owned);
+  sort_along(grid, carried);
+  halo_.build(store, periods_, reach);
+  store.reserve(store.all());
+  store.place_padding();
+  // A wet pair that has just passed the gap gives its liquid back before it is forgotten.
+  contacts.clear();
+  contacts.reserve(contacts_before + contacts_before / 32);
+  find_pairs(grid, store, periods_, {laws_.setup().enter_gap, gap, skin_, liquid_.active() ? gap + skin_ : gap},
+             memory_, contacts);
+  travel_ = path_ = 0;
+  steps_since_rebuild_ = 0;
+  contacts.pad(store.padding());
+  wall_contacts.restore(wall_memory_);
+  memory_.rows.release();
+  wall_memory_.release();
+  detached_ = false;
+  walls_.list(store.motion.data(), store.owned, skin_, gap);
+  store.note_origins();
+  if (fluid_ && within_step) prepare_fluid(h);
+  sum_up();
+}
+
+/// Brings the owned particles, and what their contacts remember, into the order of the grid's cells.
+void Engine::sort_along(const CellGrid& grid, Aligned<Load>& carried) {
+  const std::vector<int> order = order_along(grid, store);
+  if (detached_) {
+    memory_.rows.reorder(order);
+    wall_memory_.reorder(order);
+  } else {
+    std::vector<int> new_place(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) new_place[order[k]] = static_cast<int>(k);
+    contacts.gather_once(store, new_place, memory_);
+    wall_contacts.gather(store.owned, wall_memory_);
+    wall_memory_.reorder(order);
+  }
+  store.ghosts = 0;
+  store.id.resize(store.owned);
+  store.reorder(order, carried);
+}
+
+/// The bound on how far particles have come grows with the fastest of each step; before the lists are made anew, the
+/// distances from where they were made are looked at.
+bool Engine::out_of_lists() {
+  if (travel_ <= 0.5 * skin_) return false;
+  double largest = 0;
+  for (int p = 0; p < store.owned; ++p) largest = std::max(largest, store.way(p));
+  if (mpi_size() > 1) MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator_);
+  travel_ = std::min(travel_, largest);
+  return travel_ > 0.45 * skin_;
+}
+
+/// Where particles run, a wider skin costs less than the lists it saves (candidates are tested only once they may
+/// touch).
+void Engine::adapt_skin() {
+  constexpr int seldom = 60;
+  if (options_.skin > 0 || steps_since_rebuild_ >= seldom) return;
+  double widest = 0.5 * largest_radius_;
+  for (const double length : periods_.length)
+    if (length > 0) widest = std::min(widest, 0.5 * length - 2 * largest_radius_ - laws_.setup().leave_gap);
+  skin_ = std::max(skin_, std::min(1.25 * skin_, widest));
+}
+
+}  // namespace silt

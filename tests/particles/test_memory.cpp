@@ -1,0 +1,151 @@
+// What the particles' arrays take, counted by their containers, and what may be left out of them without a change.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "gas_box.hpp"
+#include "particles/rearrange.hpp"
+#include "particles/sweep.hpp"
+
+using namespace silt;
+
+namespace {
+
+/// A simple cubic lattice of touching spheres in a periodic box: six contacts each.
+std::unique_ptr<BoxRun> cubic_pack(int n, double overlap) {
+  const double side = n * 1e-3 * (1 - overlap);
+  BoxCase setup;
+  setup.box(Vec3::Zero(), Vec3::Constant(side)).periodic();
+  setup.set("particles_speed", "0.1").set("particles_skin", "1e-4");
+  auto run = std::make_unique<BoxRun>(setup);
+  std::vector<Seed> seeds;
+  for (int k = 0; k < n * n * n; ++k)
+    seeds.push_back(sphere(side / n * Vec3(k % n + 0.5, k / n % n + 0.5, k / n / n + 0.5), Vec3::Zero(), 0.5e-3));
+  run->particles.add(seeds);
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE("Spheres with six contacts take less than 600 bytes each, the last good state included", "[particles]") {
+  const auto pack = cubic_pack(30, 1e-3);
+  Particles& particles = pack->particles;
+  const double count = 27000;
+  const ParticleStep step = particles.advance(0, 20 * particles.time_step());
+  REQUIRE(step.contacts == 3 * count);
+  const auto kept = particles.snapshot(false);
+  INFO(particles.memory(kept.get()));
+  CHECK(particles.bytes() < 400 * count);
+  CHECK(particles.bytes(kept.get()) < 600 * count);
+  // What a fluid does to the particles has its room once somebody asks for it.
+  particles.fluid_action(0);
+  CHECK(particles.bytes() > 600 * count);
+}
+
+TEST_CASE("A state kept without forces is the same state, and the way from it differs by the forces of one step",
+          "[particles]") {
+  BoxCase setup;
+  setup.box(Vec3::Zero(), Vec3::Constant(8e-3));
+  setup.set("material_bead_young_modulus", "1e6").set("material_bead_friction", "0").set("particles_speed", "1");
+  BoxRun run(setup);
+  run.particles.add(gas(7, Vec3::Zero(), Vec3::Constant(8e-3), 0.5e-3, 0.3, 0.1));
+  run.particles.advance(0, 3e-3);
+  const auto start = gather(run.particles);
+  const auto whole = run.particles.snapshot(), lean = run.particles.snapshot(false);
+  CHECK(run.particles.bytes(lean.get()) < run.particles.bytes(whole.get()) - 64 * run.particles.total() + 1);
+  run.particles.restore(*whole);
+  run.particles.advance(3e-3, 1e-3);
+  const auto first = gather(run.particles);
+  run.particles.restore(*lean);
+  const auto back = gather(run.particles);
+  for (const auto& [id, s] : start)
+    for (int d = 0; d < 3; ++d) {
+      CHECK(s.x[d] == back.at(id).x[d]);
+      CHECK(s.v[d] == back.at(id).v[d]);
+      CHECK(s.w[d] == back.at(id).w[d]);
+    }
+  run.particles.advance(3e-3, 1e-3);
+  const auto second = gather(run.particles);
+  double largest = 0;
+  for (const auto& [id, s] : first)
+    for (int d = 0; d < 3; ++d) largest = std::max(largest, std::abs(s.v[d] - second.at(id).v[d]));
+  // Dashpots now see the velocities of this state, in the run they saw those predicted for it.
+  CHECK(largest < 1e-3 * 0.3);
+}
+
+TEST_CASE("Particles without load move by the same bits whether their loads are read or not", "[particles]") {
+  Random random(9);
+  constexpr int count = 203;
+  __builtin_cpu_init();
+  for (const char* name : {"plain", "avx2", "avx512"}) {
+    if (std::string(name) == "avx2" && !__builtin_cpu_supports("avx2")) continue;
+    if (std::string(name) == "avx512" && !__builtin_cpu_supports("avx512dq")) continue;
+    for (const bool drift : {true, false}) {
+      INFO(name << " drift " << drift);
+      struct Copy {
+        Aligned<Motion> motion;
+        Aligned<Load> present, previous;
+        Aligned<double> turned;
+      } with, without;
+      std::vector<unsigned char> now(count), before(count);
+      with.motion.reserve(count), with.present.reserve(count), with.previous.reserve(count);
+      with.turned.reserve(4 * count);
+      for (int p = 0; p < count; ++p) {
+        Motion& m = with.motion[p];
+        vec3(m.position) = random.vector(1), vec3(m.velocity) = random.vector(1), vec3(m.spin) = random.vector(100);
+        m.radius = random(1e-3, 2e-3), m.inverse_mass = random(1e3, 1e5), m.material = 0;
+        now[p] = random(0, 1) < 0.2, before[p] = random(0, 1) < 0.2;
+        with.turned[4 * p] = 1;
+        for (int d = 0; d < 3; ++d) {
+          if (now[p]) with.present[p].force[d] = random(-1, 1), with.present[p].torque[d] = random(-1e-3, 1e-3);
+          if (before[p]) with.previous[p].force[d] = random(-1, 1), with.previous[p].torque[d] = random(-1e-3, 1e-3);
+        }
+      }
+      without.motion = Aligned<Motion>(with.motion);
+      without.present = Aligned<Load>(with.present), without.previous = Aligned<Load>(with.previous);
+      without.turned = Aligned<double>(with.turned);
+      double largest[2];
+      for (Copy* copy : {&with, &without}) {
+        Integration step;
+        step.motion = copy->motion.data(), step.present = copy->present.data(), step.previous = copy->previous.data();
+        step.count = count, step.dt = 1e-5, step.second = 0.5e-10, step.correct = true, step.drift = drift;
+        step.orientation = reinterpret_cast<double(*)[4]>(copy->turned.data());
+        step.gravity[2] = -9.81, step.gravity[0] = 0.3;
+        if (copy == &without) step.loaded = now.data(), step.loaded_before = before.data();
+        choose_kernels(name).integrate(step);
+        largest[copy == &without] = step.largest_square;
+      }
+      CHECK(largest[0] == largest[1]);
+      int different = 0;
+      for (int p = 0; p < count; ++p) {
+        const Motion &a = with.motion[p], &b = without.motion[p];
+        for (int d = 0; d < 3; ++d)
+          different += a.position[d] != b.position[d] || a.velocity[d] != b.velocity[d] || a.spin[d] != b.spin[d] ||
+                       (drift && without.previous[p].force[d] != 0);
+        for (int d = 0; d < 4; ++d) different += with.turned[4 * p + d] != without.turned[4 * p + d];
+      }
+      CHECK(different == 0);
+    }
+  }
+}
+
+TEST_CASE("Arrays are rearranged in place as by a copy", "[particles]") {
+  Random random(2);
+  constexpr int count = 1000;
+  std::vector<int> order(count), kept;
+  std::iota(order.begin(), order.end(), 0);
+  for (int k = 0; k < 300; ++k)
+    std::swap(order[static_cast<int>(random(0, count))], order[static_cast<int>(random(0, count))]);
+  for (int k = 0; k < count; k += 1 + k % 3) kept.push_back(k);
+  for (const auto& wanted : {order, kept}) {
+    std::vector<double> values(3 * count);
+    std::iota(values.begin(), values.end(), 0.0);
+    Rearrangement(wanted, count).apply(values.data(), 3);
+    int wrong = 0;
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      for (int c = 0; c < 3; ++c) wrong += values[3 * k + c] != 3 * wanted[k] + c;
+    CHECK(wrong == 0);
+  }
+  std::iota(order.begin(), order.end(), 0);
+  CHECK(Rearrangement(order, count).nothing_moves());
+}
