@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws docs/models/*.png: the contact laws by `silt -law_table_motion`, the scenes by runs; started by scripts/model_pictures."""
+"""Draws docs/models/*.png: the laws and fields by `silt -law_table_motion`, the scenes by runs; started by scripts/model_pictures."""
 import glob
 import os
 import subprocess
@@ -74,12 +74,72 @@ LAWS = {
 
 def table(silt, motion, options):
     words = [silt, "-law_table_motion", motion]
-    for name, value in {**BEAD, **options}.items():
+    given = {**BEAD, **options}
+    if given.get("normal_type") in ("lee_herrmann", "kuwabara_kono", "langston", "lennard_jones", "thornton"):
+        del given["material_bead_restitution"]  # these laws have their own damping
+    for name, value in given.items():
         words += ["-" + name, str(value)]
     done = subprocess.run(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     if done.returncode:
         sys.exit(done.stderr + " ".join(words))
     return np.loadtxt(done.stdout.splitlines(), delimiter=",", skiprows=1)
+
+
+MAGNET = {"material_bead_density": 2500, "law_table_radius": 1e-6, "law_table_gap": 4e-6, "law_table_rows": 60}
+FIXED = {"magnetic_type": "fixed", "magnetic_magnetisation": 1e5, "magnetic_direction": "0, 0, 1"}
+# Panels of a field: title, options, angle between the line of centres and the moment, and the columns drawn.
+FIELDS = {
+    "magnetic": [
+        ("fixed, head to tail", FIXED, 0, ("radial",)),
+        ("fixed, side by side", FIXED, 90, ("radial",)),
+        ("fixed, oblique (45 degrees)", FIXED, 45, ("radial", "across")),
+        ("saturated, oblique (60 degrees)", {"magnetic_type": "saturated", "magnetic_magnetisation": 1e5, "magnetic_field": "0, 0, 1e5"}, 60, ("radial", "across")),
+        ("linear, head to tail", {"magnetic_type": "linear", "magnetic_susceptibility": 2, "magnetic_field": "0, 0, 1e5"}, 0, ("radial",)),
+        ("linear, side by side", {"magnetic_type": "linear", "magnetic_susceptibility": 2, "magnetic_field": "0, 0, 1e5"}, 90, ("radial",)),
+        ("langevin, head to tail", {"magnetic_type": "langevin", "magnetic_magnetisation": 2e5, "magnetic_susceptibility": 2, "magnetic_field": "0, 0, 1e5"}, 0, ("radial",)),
+        ("permanent, oblique (45 degrees)", {**FIXED, "magnetic_type": "permanent"}, 45, ("torque",)),
+    ],
+    "electric": [
+        ("coulomb, like charges", {"electric_type": "dc", "electric_charge": "1e-15", "electric_coulomb": "yes"}, 0, ("radial",)),
+        ("coulomb, in water", {"electric_type": "dc", "electric_charge": "1e-15", "electric_coulomb": "yes", "electric_fluid_permittivity": 78.5}, 0, ("radial",)),
+    ],
+}
+MU0 = 4e-7 * np.pi
+EPS0 = 8.8541878128e-12
+
+
+def closed_form(title, options, angle, distance):
+    """Radial and transverse force and torque of the bare pair: dipoles that do not change each other, charges."""
+    theta, radius = np.radians(angle), MAGNET["law_table_radius"]
+    if "electric_type" in options:
+        return {"radial": 1e-30 / (4 * np.pi * EPS0 * options.get("electric_fluid_permittivity", 1) * distance**2)}
+    volume, x = 4 / 3 * np.pi * radius**3, 3 * 2 * 1e5 / 2e5
+    moment = volume * {"linear": 2e5, "langevin": 2e5 * (1 / np.tanh(x) - 1 / x)}.get(options["magnetic_type"], 1e5)
+    size = 3 * MU0 * moment**2 / (4 * np.pi * distance**4)
+    return {"radial": size * (1 - 3 * np.cos(theta) ** 2), "across": -size * np.sin(2 * theta), "torque": 0.5 * size * distance * np.sin(2 * theta)}
+
+
+def draw_fields(silt):
+    for slot, panels in FIELDS.items():
+        columns = min(4, len(panels))
+        rows = -(-len(panels) // columns)
+        figure, axes = plt.subplots(rows, columns, figsize=(2.3 * columns + 0.4, 1.9 * rows + 0.2), squeeze=False)
+        for axis, (title, options, angle, drawn) in zip(axes.flat, panels):
+            data = table(silt, "field", {**MAGNET, **options, "law_table_angle": angle})
+            bare = closed_form(title, options, angle, data[:, 0])
+            picked = [("radial", "across", "torque").index(name) + 1 for name in drawn]
+            fx = scaled(axis.set_xlabel, data[:, 0], "distance", "m")
+            fy = scaled(axis.set_ylabel, data[:, picked], "torque" if drawn == ("torque",) else "force", "N m" if drawn == ("torque",) else "N")
+            for name, column, colour in zip(drawn, picked, ("C0", "C3")):
+                axis.plot(fx * data[:, 0], fy * data[:, column], colour, label=name)
+                axis.plot(fx * data[::6, 0], fy * bare[name][::6], "k.", markersize=3)
+            axis.axhline(0, color="k", linewidth=0.5)
+            axis.set_title(title, fontsize=8)
+            axis.legend(fontsize=7)
+        figure.tight_layout()
+        figure.savefig(os.path.join(OUT, slot + ".png"), dpi=90)
+        plt.close(figure)
+        print("docs/models/" + slot + ".png", flush=True)
 
 
 def scaled(axis, values, symbol, unit):
@@ -224,10 +284,10 @@ def draw_scenes(silt):
 
 
 def main():
-    silt, wanted = os.path.abspath(sys.argv[1]), sys.argv[2:] or ["laws", "scenes"]
+    silt, wanted = os.path.abspath(sys.argv[1]), sys.argv[2:] or ["laws", "fields", "scenes"]
     os.makedirs(OUT, exist_ok=True)
     for word in wanted:
-        {"laws": draw_laws, "scenes": draw_scenes}[word](silt)
+        {"laws": draw_laws, "fields": draw_fields, "scenes": draw_scenes}[word](silt)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,8 @@ Made by `scripts/options_page` from the lists of models in the code; do not edit
 Flows*, 2nd ed., chapter 7. The first of each list is the default. Overlap x, approach dx/dt, slip V_t, spins w. The
 checks are made by the tests; `verified by` names cases of `scripts/verify models`, whose figures stand in
 [verification.md](verification.md). The pictures are drawn by `scripts/model_pictures` from the solver's own loops
-(`-law_table_motion`): in and out at constant speed, or to and fro under a constant load.
+(`-law_table_motion`): in and out at constant speed, or to and fro under a constant load; dots in those of fields are the closed form of two bare
+dipoles or charges, from which mutual magnetisation departs.
 """
 
 
@@ -24,15 +25,33 @@ def chosen(text):
     return found + re.findall(r"^(\w+):\s*\n(?:  .*\n)*?  type:\s*(\w+)", text, re.M)
 
 
-def verifying():
+def declared(silt):
+    """What the solver says of its models."""
+    return subprocess.run([silt, "-models_page"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, check=True).stdout
+
+
+def switches(page):
+    """(slot, model, pattern) of every model that an option of its own switches on, as in an options file."""
+    for slot, rows in re.findall(r"^## `-(\w+)_\.\.\.`\n((?:\n|\|.*\n?)+)", page, re.M):
+        for name, option, value in re.findall(r"^\| `(\w+)` \|.*?\| `-(\w+)(?: (\w+))?` \|", rows, re.M):
+            group, _, key = option.partition("_") if option != "virtual_mass_coefficient" else ("virtual_mass", "_", "coefficient")
+            begin = rf"^{group}:[^\n]*(?:\n  [^\n]*)*?\b{key}:"
+            if option == "gravity":  # a weight, in a fluid
+                begin = r"\A(?=[\s\S]*^fluid: \{type: (?!none))[\s\S]*^gravity: \[[^\]]*[1-9]"
+            yield slot, name, begin + (rf"\s*{value}\b" if value else "")
+
+
+def verifying(page):
     """The cases of `scripts/verify models`, by (slot, model)."""
     cases = {}
+    switched = list(switches(page))
     paths = glob.glob(os.path.join(ROOT, "inputs", "models", "*.yaml")) + glob.glob(os.path.join(ROOT, "inputs", "verification", "models_*.yaml"))
     for path in sorted(paths, key=os.path.basename):
         text = open(path).read()
         if not re.search(r"^expect:", text, re.M):
             continue
-        for key in chosen(text):
+        found = chosen(text) + [(slot, name) for slot, name, pattern in switched if re.search(pattern, text, re.M)]
+        for key in dict.fromkeys(found):
             cases.setdefault(key, []).append(os.path.basename(path)[:-5])
     return cases
 
@@ -47,11 +66,11 @@ def scenes():
 
 
 def page(silt):
-    declared = subprocess.run([silt, "-models_page"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, check=True).stdout
-    cases = verifying()
+    text = declared(silt)
+    cases = verifying(text)
     lines, slot, pictured = [HEAD.rstrip()], "", None
-    for line in declared.splitlines():
-        heading = re.match(r"## `-(\w+)_type`", line)
+    for line in text.splitlines():
+        heading = re.match(r"## `-(\w+)_(?:type|\.\.\.)`", line)
         row = re.match(r"\| `(\w+)` \|", line)
         if heading:
             slot, pictured = heading[1], os.path.exists(os.path.join(ROOT, "docs", "models", heading[1] + ".png"))

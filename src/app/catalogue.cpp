@@ -144,12 +144,30 @@ void each_model(Act&& act) {
   each_of("magnetic", MagneticModels{}, act);
 }
 
+/// Calls act(slot, model) for every model that an option of its own switches on.
+template <class Act>
+void each_switched(Act&& act) {
+  const auto all = [&](const char* slot, const auto& models) {
+    for (const SwitchedModel& model : models) act(slot, model);
+  };
+  all("electric", electric_models);
+  all("brownian", brownian_models);
+  all("virtual_mass", virtual_mass_models);
+  all("coupling", coupling_models);
+  all("heat", heat_models);
+}
+
 template <class Model>
 constexpr ModelNote note_of(const Model&) {
   if constexpr (requires { Model::note; })
     return Model::note;
   else
     return {"", "", "", ""};
+}
+
+/// Equation and paper of a note.
+std::string source_of(const ModelNote& note) {
+  return fmt::format("{}{}{}", note.equation, *note.equation && *note.source ? ", " : "", note.source);
 }
 
 /// A cell of a Markdown table.
@@ -167,11 +185,12 @@ const Options& catalogue() {
 
 std::string model_list() {
   std::string text;
-  each_model([&](const char* slot, const auto& model) {
-    const ModelNote note = note_of(model);
-    text += fmt::format("{:<13} {:<19} {:<22} {}\n", slot, model.name, note.equation[0] ? note.equation : "-",
+  const auto line = [&](const char* slot, const char* name, const ModelNote& note) {
+    text += fmt::format("{:<13} {:<19} {:<22} {}\n", slot, name, note.equation[0] ? note.equation : "-",
                         note.source[0] ? note.source : "-");
-  });
+  };
+  each_model([&](const char* slot, const auto& model) { line(slot, model.name, note_of(model)); });
+  each_switched([&](const char* slot, const SwitchedModel& model) { line(slot, model.name, model.note); });
   return text;
 }
 
@@ -192,10 +211,17 @@ std::string model_page() {
       parameters += fmt::format("{}`{}`{}", parameters.empty() ? "" : ", ", entry.name,
                                 entry.unit.empty() || entry.unit == "-" ? "" : " (" + entry.unit + ")");
     const ModelNote note = note_of(model);
-    const std::string source =
-        fmt::format("{}{}{}", note.equation, *note.equation && *note.source ? ", " : "", note.source);
     text += fmt::format("| `{}` | {} | {} | {} | {} |\n", model.name, cell(note.formula), cell(parameters),
-                        cell(source), cell(note.check));
+                        cell(source_of(note)), cell(note.check));
+  });
+  each_switched([&](const char* slot, const SwitchedModel& model) {
+    if (section != slot) {
+      section = slot;
+      text += fmt::format(
+          "\n## `-{}_...`\n\n| name | formula | option | source | checked against |\n|---|---|---|---|---|\n", slot);
+    }
+    text += fmt::format("| `{}` | {} | `-{}` | {} | {} |\n", model.name, cell(model.note.formula), model.option,
+                        cell(source_of(model.note)), cell(model.note.check));
   });
   return text;
 }

@@ -15,6 +15,13 @@ struct ModelNote {
   const char* check;     ///< closed form it is tested against
 };
 
+/// A model that has an option of its own rather than a place in a list, as `-models` and docs/models.md show it.
+struct SwitchedModel {
+  const char* name;
+  const char* option;  ///< that switches it on, with its value; without one where any value does
+  ModelNote note;
+};
+
 /// A list of physical models among which the user picks one by name: `using Normal = Models<Linear, Tsuji>;`.
 /// A model has `static constexpr const char* name`, `void options(OptionGroup&)` and, where its options depend on each
 /// other, `void check() const` (throws UserError); the list's line is its

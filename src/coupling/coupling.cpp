@@ -323,16 +323,10 @@ void Coupling::after_fluid(double dt) {
       std::max({(ledger_.drag_on_particles + ledger_.forces_on_particles + ledger_.drag_on_fluid).norm(),
                 (ledger_.response_on_particles + ledger_.response_on_fluid).norm(),
                 (ledger_.pressure_on_particles + ledger_.pressure_on_fluid).norm()});
-  ledger_.residual = exchanged_ > 0 ? imbalance / exchanged_ : 0;
-  if (ledger_.particle_volume > 0) {
-    ledger_.residual = std::max(ledger_.residual,
-                                std::abs(ledger_.deposited_volume - ledger_.particle_volume) / ledger_.particle_volume);
-  }
-  if (!(ledger_.residual <= exchange_tolerance)) {
-    throw RunError(fmt::format(
-        "the exchange between fluid and particles is out of balance by {:.3g} of what was exchanged, allowed {:.0e}",
-        ledger_.residual, exchange_tolerance));
-  }
+  const char* what = "the exchange between fluid and particles";
+  ledger_.residual =
+      std::max(balanced(what, imbalance, exchanged_),
+               balanced(what, std::abs(ledger_.deposited_volume - ledger_.particle_volume), ledger_.particle_volume));
 }
 
 std::string Coupling::description() const {

@@ -62,4 +62,8 @@ struct ExchangeLedger {
 /// The residual above which the run must stop.
 inline constexpr double exchange_tolerance = 1e-10;
 
+/// `imbalance` over the magnitudes that were `exchanged`. Throws RunError where it is above exchange_tolerance; `what`
+/// names the exchange.
+double balanced(const char* what, double imbalance, double exchanged);
+
 }  // namespace silt

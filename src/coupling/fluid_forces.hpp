@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/models.hpp"
 #include "base/nodal_gradient.hpp"
 #include "coupling/filter.hpp"
 #include "coupling/fluid_properties.hpp"
@@ -14,6 +15,25 @@
 #include "particles/particles.hpp"
 
 namespace silt {
+
+/// Forces of the fluid beside drag and lift that have no list.
+inline constexpr SwitchedModel virtual_mass_models[] = {
+    {"sphere",
+     "virtual_mass_coefficient",
+     {"", "Auton, Hunt & Prud'homme 1988", "F = C rho V (Du/Dt - dv/dt), C = 0.5 for a sphere",
+      "a bubble starts with nearly 2 g; path in an accelerating flow"}},
+};
+inline constexpr SwitchedModel coupling_models[] = {
+    {"pressure_gradient",
+     "fluid_pressure",
+     {"(3.291)", "", "F = -V grad p, always", "acceleration by a given gradient"}},
+    {"viscous_stress",
+     "coupling_viscous_stress yes",
+     {"(3.291)", "", "F = V div tau of the undisturbed flow", "acceleration in a parabolic flow"}},
+    {"buoyancy",
+     "gravity",
+     {"(3.292)", "", "m g (1 - rho/rho_p), where p has no static head", "acceleration without drag"}},
+};
 
 /// The options `-virtual_mass_...`.
 struct VirtualMassOptions {

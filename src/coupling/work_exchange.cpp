@@ -1,7 +1,5 @@
 #include "coupling/work_exchange.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -78,12 +76,7 @@ void WorkExchange::close(double dt, double depth) {
   ledger_.in_transit = all[4], exchanged_ = all[5];
   const double imbalance =
       std::max(std::abs(ledger_.given + ledger_.owed), std::abs(ledger_.response - ledger_.settled));
-  ledger_.residual = exchanged_ > 0 ? imbalance / exchanged_ : 0;
-  if (!(ledger_.residual <= exchange_tolerance))
-    throw RunError(
-        fmt::format("the work exchanged between fluid and particles is out of balance by {:.3g} of what was exchanged, "
-                    "allowed {:.0e}",
-                    ledger_.residual, exchange_tolerance));
+  ledger_.residual = balanced("the work exchanged between fluid and particles", imbalance, exchanged_);
 }
 
 }  // namespace silt

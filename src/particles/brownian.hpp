@@ -1,9 +1,25 @@
 #pragma once
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "particles/store.hpp"
 #include "particles/sweep.hpp"
 
 namespace silt {
+
+/// What `-brownian_...` switches on.
+inline constexpr SwitchedModel brownian_models[] = {
+    {"inertial",
+     "brownian_temperature",
+     {"(3.293)", "Ornstein & Uhlenbeck 1930; Ermak & Buckholz 1980",
+      "noise that keeps m <v^2>/3 = k_B T: <dv^2> = (k_B T/m)(1 - exp(-2 k h/m)) a substep h, with the displacement "
+      "that "
+      "goes with it",
+      "equipartition, velocity autocorrelation and 6 D t at any step; the same noise on any ranks"}},
+    {"overdamped",
+     "brownian_overdamped yes",
+     {"(3.293)", "Ermak & McCammon 1978", "dx = (u + F/k) h + (2 D h)^0.5 xi, D = k_B T/k",
+      "6 D t, and the drift F/k"}},
+};
 
 /// The options `-brownian_...`.
 struct BrownianOptions {

@@ -26,6 +26,7 @@ struct Contact {
   Real spin[3];           ///< rad/s, w_i - w_j
   Real effective_radius;  ///< m, (7.14)
   Real effective_mass;    ///< kg, (7.10)
+  Real dt;                ///< s, length of the step that has led here, 0 at the start
 
   // Only where a law of the run is `extended` (as spin):
   Real radius;           ///< m, of i; with effective_radius it gives R_j also at a wall: 1/R_j = 1/R_eff - 1/R_i
@@ -91,6 +92,7 @@ inline Contact<double> wall_contact(const Motion& particle, const WallPoint& poi
   contact.overlap = particle.radius - point.distance;
   contact.effective_radius = particle.radius;
   contact.effective_mass = 1 / particle.inverse_mass;
+  contact.dt = 0;
   contact.radius = particle.radius;
   contact.distance = point.distance;
   contact.rolling_inertia = 1.4 * particle.radius * particle.radius / particle.inverse_mass;

@@ -109,6 +109,7 @@ ContactLaws::ContactLaws(Options& options, const Materials& materials)
           using Constants = typename Model::template Constants<double>;
           history_components_ += doubles_in<typename Model::template History<double>>;
           setup_.extended |= Model::extended;
+          setup_.jumping |= requires { Model::jumps; };
           setup_.cohesive |= requires(const Constants& c, const Encounter& e) { model.reach(c, e); };
         },
         slot.model);
@@ -131,6 +132,12 @@ void ContactLaws::check_combination() const {
               fmt::format("-adhesion_type {} needs the Hertz spring of -normal_type tsuji, lee_herrmann or "
                           "kuwabara_kono; {} has another",
                           adhesion, model.name));
+        if constexpr (requires { model.loss(); })
+          if (model.loss() && !materials_.restitution_given().empty())
+            throw UserError(
+                fmt::format("{} and {} both say what a collision loses: -normal_type {} takes the latter, give "
+                            "one",
+                            materials_.restitution_given(), model.loss(), model.name));
         if constexpr (requires { model.no_attraction; })
           if (setup_.adhesion.model > 0 && model.no_attraction)
             throw UserError(fmt::format("-normal_no_attraction and -adhesion_type {} exclude each other", adhesion));

@@ -39,6 +39,12 @@ constexpr double gauss_at[6] = {0.0337652428984240, 0.1693953067668677, 0.380690
 constexpr double gauss_weight[6] = {0.0856622461895852, 0.1803807865240693, 0.2339569672863455,
                                     0.2339569672863455, 0.1803807865240693, 0.0856622461895852};
 
+/// Whether the force at rest is one of the overlap alone: the law remembers nothing but whether the surfaces meet.
+template <class Model>
+constexpr bool has_spring = std::is_empty_v<typename Model::template History<double>> || requires {
+  Model::jumps;
+};
+
 }  // namespace
 
 EnergyLedger::EnergyLedger(Columns& columns)
@@ -135,7 +141,7 @@ void EnergyLedger::find_elastic(const ContactLaws& laws, int count, ContactAt&& 
         using Model = std::decay_t<decltype(model)>;
         using Constants = typename Model::template Constants<double>;
         using History = typename Model::template History<double>;
-        elastic.potential = std::is_empty_v<History> && !requires(const Constants& c, const Encounter& e) {
+        elastic.potential = has_spring<Model> && !requires(const Constants& c, const Encounter& e) {
           model.reach(c, e);
         };
         std::vector<Constants> constants;
@@ -145,8 +151,8 @@ void EnergyLedger::find_elastic(const ContactLaws& laws, int count, ContactAt&& 
           int pair = 0;
           Contact<double> contact = contact_at(k, pair);
           contact.approach = 0;
-          if constexpr (std::is_empty_v<History>) {
-            History none;
+          if constexpr (has_spring<Model>) {
+            History none{};
             elastic.force[k] = Model::template load<double>(contact, constants[pair], none).force;
             if (!elastic.potential || contact.overlap <= 0) continue;
             // With the overlap x t^2 the forces of the laws are smooth in t.

@@ -258,7 +258,8 @@ ParticleStep Engine::advance(double time, double dt) {
     step.correct = s > 0 && late > 0 && !energy_;
     step.drift = true;
     kernels_.integrate(step);
-    double way = std::sqrt(step.largest_square), farthest = travel_ + way;
+    strode_ = std::sqrt(step.largest_square);
+    double way = strode_, farthest = travel_ + strode_;
     if (brownian_.active() && fluid_) {
       const BrownianWay noise = brownian_.act(store, step, time + (s + 1) * h);
       farthest = noise.from_lists;
@@ -268,14 +269,17 @@ ParticleStep Engine::advance(double time, double dt) {
     loaded_.swap(loaded_before_);
     few_loaded_before_ = few_loaded_;
     if (!std::isfinite(step.check)) trouble_ = find_bad();
+    const double walls_before = walls_.moved();
     move_walls(time + s * h, h);
+    strode_ += std::max(0.0, walls_.moved() - walls_before);
     ++steps_since_rebuild_;
     // Whether anything is wrong, whether a wall has left its list, how far any particle may have come, and how far in
-    // this step.
-    double state[4] = {double(!trouble_.empty()), double(walls_.moved() > 0.5 * skin_), farthest, way};
-    if (!alone) MPI_Allreduce(MPI_IN_PLACE, state, 4, MPI_DOUBLE, MPI_MAX, communicator_);
+    // this step, particles alone and against walls.
+    double state[5] = {double(!trouble_.empty()), double(walls_.moved() > 0.5 * skin_), farthest, way, strode_};
+    if (!alone) MPI_Allreduce(MPI_IN_PLACE, state, 5, MPI_DOUBLE, MPI_MAX, communicator_);
     travel_ = state[2];
     path_ += state[3];
+    strode_ = state[4];
     if (state[0] > 0) stop_if_any(trouble_);
     if (state[1] > 0 || out_of_lists())
       rebuild(store.previous, true, h);

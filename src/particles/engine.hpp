@@ -179,6 +179,7 @@ class Engine {
   // Which particles the last evaluation may have loaded, and the one before it, where it was worth noting.
   bool few_loaded_ = false, few_loaded_before_ = false;
   std::vector<unsigned char> loaded_, loaded_before_;
+  double strode_ = 0;  ///< m, longest way of a particle, and of a wall, in the last step
   int steps_since_rebuild_ = 0;
   SmallestRadii smallest_;
   std::int64_t next_id_ = 0;

@@ -30,9 +30,10 @@ void Engine::evaluate(double time, double dt) {
   search.enter_gap = setup.enter_gap;
   contacts.look(search, path_ / skin_, skin_, kernels_.candidates);
 
-  walls_.points(store.motion.data(), time, wall_contacts.next());
-  wall_contacts.adopt();
-  liquid_.exchange(store, contacts, wall_contacts, periods_);
+  // A wall that has been left in this step is looked at once more where a law's force ends with a jump.
+  walls_.points(store.motion.data(), time, wall_contacts.next(), setup.jumping ? strode_ : 0);
+  wall_contacts.adopt(store.motion.data(), setup.leave_gap);
+  liquid_.exchange(store, contacts, wall_contacts, periods_, dt);
 
   PairSweep sweep;
   sweep.motion = store.motion.data();

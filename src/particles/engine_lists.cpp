@@ -57,11 +57,13 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   halo_.build(store, periods_, reach);
   store.reserve(store.all());
   store.place_padding();
-  // A wet pair that has just passed the gap gives its liquid back before it is forgotten.
+  // A pair that has just passed the gap is looked at once more: it gives its liquid back, its force ends within the
+  // step.
+  const bool once_more = liquid_.active() || laws_.setup().jumping;
   contacts.clear();
   contacts.reserve(contacts_before + contacts_before / 32);
-  find_pairs(grid, store, periods_, {laws_.setup().enter_gap, gap, skin_, liquid_.active() ? gap + skin_ : gap},
-             memory_, contacts);
+  find_pairs(grid, store, periods_, {laws_.setup().enter_gap, gap, skin_, once_more ? gap + skin_ : gap}, memory_,
+             contacts);
   travel_ = path_ = 0;
   steps_since_rebuild_ = 0;
   contacts.pad(store.padding());

@@ -22,9 +22,11 @@ struct alignas(64) Block {
   double radius[block_size], distance[block_size], rolling_inertia[block_size];  ///< extended
   double normal_force[block_size], damping[block_size], contact_radius[block_size], stiffness[block_size];
   double pull_off[block_size] = {};  ///< stays 0 without adhesion
+  double jump[block_size] = {};      ///< stays 0 unless the normal law jumps
   double pull[block_size];           ///< N, normal force besides normal_force; cohesive laws only
   double noted[block_size];          ///< N, normal_force as the normal law left it; only where traced
   double force[3][block_size], torque[3][block_size];
+  double dt = 0;  ///< s
 };
 
 SILT_INLINE Contact<Pack> contact_at(const Block& block, int o) {
@@ -38,6 +40,7 @@ SILT_INLINE Contact<Pack> contact_at(const Block& block, int o) {
   contact.approach = load(&block.approach[o]);
   contact.effective_radius = load(&block.effective_radius[o]);
   contact.effective_mass = load(&block.effective_mass[o]);
+  contact.dt = Pack(block.dt);
   contact.radius = load(&block.radius[o]);
   contact.distance = load(&block.distance[o]);
   contact.rolling_inertia = load(&block.rolling_inertia[o]);
@@ -116,6 +119,7 @@ void normal_stage(Block& block, const StageCall& call) {
   each_pack<Model, several>(block, call, [&](int o, const auto& constants, auto& history) {
     const NormalLoad<Pack> result = Model::template load<Pack>(contact_at(block, o), constants, history);
     store(&block.normal_force[o], result.force);
+    if constexpr (requires { Model::jumps; }) store(&block.jump[o], result.jump);
     store(&block.damping[o], result.damping);
     store(&block.contact_radius[o], result.contact_radius);
     store(&block.stiffness[o], result.stiffness);
@@ -199,8 +203,15 @@ inline void add_pull_stage(Block& block, const StageCall& call) {
       store(&block.force[d][o], load(&block.force[d][o]) + load(&block.pull[o]) * load(&block.normal[d][o]));
 }
 
+inline void add_jump_stage(Block& block, const StageCall& call) {
+  for (int o = 0; o < call.count; o += lanes)
+    for (int d = 0; d < 3; ++d)
+      store(&block.force[d][o], load(&block.force[d][o]) + load(&block.jump[o]) * load(&block.normal[d][o]));
+}
+
 inline void note_normal_stage(Block& block, const StageCall& call) {
-  for (int o = 0; o < call.count; o += lanes) store(&block.noted[o], load(&block.normal_force[o]));
+  for (int o = 0; o < call.count; o += lanes)
+    store(&block.noted[o], load(&block.normal_force[o]) + load(&block.jump[o]));
 }
 
 /// The stage functions of a list of models, by place in the list.
@@ -257,6 +268,7 @@ class Laws {
     add(tangential_function<several>(static_cast<const TangentialModels*>(nullptr), setup.tangential.model),
         setup.tangential);
     if (setup.cohesive) add(add_pull_stage, whole_);
+    if (setup.jumping) add(add_jump_stage, whole_);
     if (!setup.extended) return;
     // The first of the two writes the torque, be it none.
     add(rolling_function<several>(static_cast<const RollingModels*>(nullptr), setup.rolling.model), setup.rolling);
@@ -267,8 +279,8 @@ class Laws {
 
   const LawSetup& setup_;
   LawStage whole_;  ///< for stages that see the whole history
-  StageFunction function_[12];
-  const LawStage* stage_[12];
+  StageFunction function_[13];
+  const LawStage* stage_[13];
   int count_ = 0;
 };
 

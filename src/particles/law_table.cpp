@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "particles/contact_laws.hpp"
 #include "particles/contact_lists.hpp"
+#include "particles/field_table.hpp"
 #include "particles/store.hpp"
 
 namespace silt {
@@ -76,6 +77,7 @@ class LedPair {
 std::string law_table(Options& options) {
   LawTableOptions chosen;
   options.read("law_table", chosen);
+  if (chosen.motion == "field") return field_table(options, chosen);
   const Materials materials(options);
   if (materials.count() == 0) throw UserError("-law_table_motion needs a material: give -material_<name>_density");
   ContactLaws laws(options, materials);

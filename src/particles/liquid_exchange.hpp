@@ -22,8 +22,9 @@ class LiquidExchange {
   LiquidExchange(const ContactLaws& laws, Columns& columns);
   bool active() const { return law_ != nullptr; }
 
-  /// Breaks, makes and asks for bridges at the present positions; before the contacts' forces. Local.
-  void exchange(Store& store, ContactLists& contacts, WallContacts& walls, const Periods& periods);
+  /// Breaks, makes and asks for bridges at the present positions, which a step of dt led to; before the contacts'
+  /// forces. Local.
+  void exchange(Store& store, ContactLists& contacts, WallContacts& walls, const Periods& periods, double dt);
   /// Gives back the liquid of bridges whose partner has left the domain (which takes its own along); `memory` as it is
   /// between lists. Collective.
   void forget(Store& store, ContactMemory& memory, const std::vector<Gone>& gone, MPI_Comm communicator) const;

@@ -31,10 +31,15 @@ PairProperties mean_of(const Material& a, const Material& b) {
 }  // namespace
 
 Materials::Materials(Options& options) {
+  const auto note_restitution = [&](const std::string& prefix) {
+    if (restitution_given_.empty() && options.given(prefix + "_restitution"))
+      restitution_given_ = "-" + prefix + "_restitution";
+  };
   for (const auto& name : options.names("material", Options::declared<Material>())) {
     Material material;
     material.name = name;
     options.read("material_" + name, material);
+    note_restitution("material_" + name);
     if (!material.density)
       throw UserError(
           fmt::format("material {} has no density: give -material_{}_density in kg/m3 (positive)", name, name));
@@ -59,6 +64,7 @@ Materials::Materials(Options& options) {
     }
     PairOverride given;
     options.read("pair_" + name, given);
+    note_restitution("pair_" + name);
     for (const int k : {first * n + second, second * n + first}) {
       if (given.restitution) pairs_[k].restitution = *given.restitution;
       if (given.friction) pairs_[k].friction = *given.friction;

@@ -75,10 +75,13 @@ class Materials {
   int index(const std::string& name, const std::string& origin) const;
   /// Symmetric in a and b.
   const PairProperties& pair(int a, int b) const { return pairs_[a * count() + b]; }
+  /// The first option by which the user gave a restitution, "" where all are the default.
+  const std::string& restitution_given() const { return restitution_given_; }
 
  private:
   std::vector<Material> materials_;
   std::vector<PairProperties> pairs_;
+  std::string restitution_given_;
 };
 
 }  // namespace silt

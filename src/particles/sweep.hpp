@@ -25,6 +25,7 @@ struct LawSetup {
   int materials = 1;
   bool extended = false;  ///< a law reads the extended fields of Contact
   bool cohesive = false;  ///< a law acts beyond touching or pulls
+  bool jumping = false;   ///< the force of a law jumps within a step (force_jump.hpp)
   bool traced = false;    ///< the sweep's trace is wanted
   int history_components = 0;
   double enter_gap = 0;  ///< m, a pair is taken among the contacts when the surfaces are nearer than this

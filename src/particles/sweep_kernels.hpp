@@ -212,6 +212,7 @@ void keep_trace(const Block& block, double* trace, std::size_t stride, int count
 template <bool periodic, bool extended, bool several>
 void pair_blocks(PairSweep& sweep) {
   Block block;
+  block.dt = sweep.dt;
   const Laws laws(sweep.laws);
   const PairArrays& pairs = sweep.pairs;
   for (int first = 0; first < pairs.count; first += block_size) {
@@ -262,6 +263,7 @@ void candidate_sweep(CandidateSweep& sweep) { sweep.periods.any ? candidates<tru
 /// Contacts with walls: the same laws, filled one by one.
 void wall_sweep(WallSweep& sweep) {
   Block block;
+  block.dt = sweep.dt;
   const Laws laws(sweep.laws);
   for (int first = 0; first < sweep.count; first += block_size) {
     const int left = sweep.count - first;

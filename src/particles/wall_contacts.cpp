@@ -16,15 +16,17 @@ void WallContacts::resize(Aligned<double>& values, std::size_t& stride, int coun
   }
 }
 
-void WallContacts::adopt() {
-  const int old_count = count(), new_count = static_cast<int>(next_.size());
-  resize(next_history_, next_stride_, new_count);
+void WallContacts::adopt(const Motion* particles, double gap) {
+  const int old_count = count(), found = static_cast<int>(next_.size());
+  int new_count = 0;
+  resize(next_history_, next_stride_, found);
   if (keep_lost_) taken_.assign(old_count, 0);
   int first = 0;  // of the particle at hand among the old points
-  for (int k = 0; k < new_count;) {
+  for (int k = 0; k < found;) {
     const int particle = next_[k].particle;
+    const double limit = particles[particle].radius + gap;
     int end = k;
-    while (end < new_count && next_[end].particle == particle) ++end;
+    while (end < found && next_[end].particle == particle) ++end;
     while (first < old_count && points_[first].particle < particle) ++first;
     int last = first;
     while (last < old_count && points_[last].particle == particle) ++last;
@@ -39,9 +41,12 @@ void WallContacts::adopt() {
         const double cosine = dot(points_[o].normal, next_[n].normal) + own;
         if (cosine > closest) closest = cosine, best = o;
       }
+      if (next_[n].distance >= limit && (best < 0 || points_[best].distance >= limit)) continue;
       if (best >= 0) taken |= 1u << (best - first);
       if (best >= 0 && keep_lost_) taken_[best] = 1;
-      for (int c = 0; c < components_; ++c) next_history_[c * next_stride_ + n] = best >= 0 ? history(c, best) : 0.0;
+      for (int c = 0; c < components_; ++c)
+        next_history_[c * next_stride_ + new_count] = best >= 0 ? history(c, best) : 0.0;
+      next_[new_count++] = next_[n];
     }
     k = end;
   }
@@ -56,6 +61,7 @@ void WallContacts::adopt() {
   }
   for (int c = 0; c < components_; ++c)
     for (int k = new_count; k < new_count + 8; ++k) next_history_[c * next_stride_ + k] = 0;
+  next_.resize(new_count);
   points_.swap(next_);
   history_.swap(next_history_);
   std::swap(stride_, next_stride_);

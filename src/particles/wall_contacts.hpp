@@ -18,9 +18,10 @@ class WallContacts {
   const std::vector<WallPoint>& points() const { return points_; }
   int row_width() const { return 4 + components_; }
 
-  /// Where the geometry writes the new points; adopt() then gives them their histories.
+  /// Where the geometry writes the new points; adopt() then gives them their histories. Of the points further from
+  /// their particle's surface than `gap` only those are kept that were nearer before: contacts that end with this step.
   std::vector<WallPoint>& next() { return next_; }
-  void adopt();
+  void adopt(const Motion* particles, double gap);
   /// A contact that ended with the last adopt(), and what it remembered.
   struct Lost {
     int particle;

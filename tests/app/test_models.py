@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts"))
-from models_page import verifying  # noqa: E402
+from models_page import declared, verifying  # noqa: E402
 
 # Laws that must be there, by slot.
 LAWS = {
@@ -28,6 +28,11 @@ LAWS = {
     "dispersion": "none random_walk",
     "nusselt": "ranz_marshall gunn whitaker",
     "magnetic": "none saturated linear langevin permanent fixed",
+    "electric": "dc ac coulomb solved",
+    "brownian": "inertial overdamped",
+    "virtual_mass": "sphere",
+    "coupling": "pressure_gradient viscous_stress buoyancy",
+    "heat": "source conduction radiation",
 }
 # Slots whose laws must name the paper they come from, `none` apart.
 SOURCED = ("normal", "tangential", "twisting", "rolling", "adhesion", "dlvo", "bridge", "interfacial", "lubrication", "drag", "saffman", "magnus", "viscous_torque", "thermophoresis", "dispersion", "nusselt", "magnetic")
@@ -41,7 +46,7 @@ def main():
         there[slot, name] = rest
     missing = [f"{slot} {name}" for slot, names in LAWS.items() for name in names.split() if (slot, name) not in there]
     nameless = [f"{slot} {name}" for (slot, name), rest in there.items() if slot in SOURCED and name != "none" and not any(c.isdigit() for c in rest)]
-    verified = verifying()
+    verified = verifying(declared(sys.argv[1]))
     unverified = [f"{slot} {name}" for slot, name in there if name != "none" and (slot, name) not in verified]
     for what, laws in (("not in -models", missing), ("without a source", nameless), ("without a case of scripts/verify models", unverified)):
         for law in laws:

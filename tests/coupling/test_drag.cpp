@@ -178,9 +178,10 @@ TEST_CASE("A suspension with the drag of Mazzei and Lettieri settles by the law 
 
 TEST_CASE("the fits to resolved beds have the values of their papers' formulas, worked out apart from the code",
           "[drag]") {
-  // Drag over Stokes' at (a, rho d |u - v|/mu) = (0.4, 0.5), (0.5, 50), (0.7, 20), (0.9, 300), from the formulas as
-  // published and as OpenFOAM, CFDEM and PhasicFlow have them; Mazzei & Lettieri's with psi = -ln(phi)/ln(a), n by
-  // bisection.
+  // Drag over Stokes' at (a, rho d |u - v|/mu) = (0.4, 0.5), (0.5, 50), (0.7, 20), (0.9, 300), worked out from the
+  // formulas as others have them: Beetstra et al. as in OpenFOAM's Beetstra and MFiX-Exa's BVK, Hill, Koch & Ladd as in
+  // Lethe, Rong et al. as in PhasicFlow, Tang et al. as in MFiX-Exa's BVK2. No code at hand has Mazzei & Lettieri's:
+  // its figures are those of its defining property, Richardson & Zaki's law with n by bisection.
   const std::array<std::pair<double, double>, 4> at = {{{0.4, 0.5}, {0.5, 50}, {0.7, 20}, {0.9, 300}}};
   const auto compare = [&](const auto& law, const std::array<double, 4>& expected) {
     for (size_t k = 0; k < at.size(); ++k) {
@@ -194,26 +195,6 @@ TEST_CASE("the fits to resolved beds have the values of their papers' formulas, 
   compare(RongDrag{}, {12.249017, 11.228221, 4.666812, 12.993112});
   compare(TangDrag{}, {15.49148, 14.996945, 6.6768826, 12.350496});
   compare(MazzaDrag{}, {8.9083627, 10.787579, 4.6945417, 12.24173});
-}
-
-TEMPLATE_TEST_CASE("every drag law is finite at rest, positive, and grows with speed and with crowding", "[drag]",
-                   StokesCunninghamDrag, SchillerNaumannDrag, HaiderLevenspielDrag, WenYuDrag, ErgunDrag, GidaspowDrag,
-                   DiFeliceDrag, BeetstraDrag, KochHillDrag, RongDrag, TangDrag, MazzaDrag) {
-  const TestType law;
-  for (const double a : {0.3, 0.45, 0.7, 0.9, 1.0}) {
-    double before = 0;
-    for (const double reynolds : {0.0, 1e-8, 1e-3, 1.0, 30.0, 300.0, 900.0, 1e5}) {
-      const double k = law.exchange(air(reynolds, a));
-      REQUIRE(std::isfinite(k));
-      REQUIRE((k > 0 || (a == 1 && reynolds == 0)));  // Ergun's bed of no particles
-      // The force grows with the speed (Di Felice's coefficient alone has a dip, where its exponent has one).
-      const double now = k * air(reynolds, a).speed;
-      REQUIRE(now >= before * (1 - 1e-9));
-      before = now;
-    }
-  }
-  for (const double reynolds : {0.0, 10.0})
-    REQUIRE(law.exchange(air(reynolds, 0.4)) >= law.exchange(air(reynolds, 0.7)));
 }
 
 TEST_CASE("an unknown drag law is refused with the list of known ones", "[drag]") {

@@ -24,10 +24,12 @@ inline Impact impact(const LawRun& run, double mass, double radius, double speed
     contact.overlap = x, contact.approach = v, contact.distance = radius - x;
     with_law(run.laws.normal(), run.laws.setup().normal, pair, history.data(),
              [&](const auto& model, const auto& c, auto& memory) {
-               force = std::decay_t<decltype(model)>::template load<double>(contact, c, memory).force;
+               const auto load = std::decay_t<decltype(model)>::template load<double>(contact, c, memory);
+               force = load.force + load.jump;
              });
   };
   evaluate();
+  contact.dt = dt;
   Impact result;
   for (int n = 0; n < 10000000; ++n) {
     const double before = force;

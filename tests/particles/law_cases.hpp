@@ -74,10 +74,19 @@ struct LawCase {
   Options options;
   LawCase() {
     set("material_bead_density", "2500").set("material_bead_rolling_friction", "0.1");
-    set("material_bead_friction", "0.5").set("material_bead_restitution", "0.8");
+    set("material_bead_friction", "0.5");
   }
   LawCase& set(const std::string& name, const std::string& value) {
     options.set(name, value);
+    return *this;
+  }
+  /// With a restitution, unless one is given or the normal law has another damping.
+  LawCase& damped() {
+    const std::string law = options.find("normal_type").value_or("tsuji");
+    const bool by_restitution =
+        law == "tsuji" || ((law == "linear" || law == "walton_braun") && !options.given("normal_damping") &&
+                           !options.given("normal_unloading_stiffness") && !options.given("normal_hardening"));
+    if (by_restitution && !options.given("material_bead_restitution")) set("material_bead_restitution", "0.8");
     return *this;
   }
   LawCase& choose(const std::string& slot, const std::string& name) {
@@ -90,7 +99,7 @@ struct LawCase {
 struct LawRun {
   /// With particles of all materials between two radii, if given.
   explicit LawRun(LawCase setup, double smallest = 0, double largest = 0)
-      : materials(setup.options), laws(setup.options, materials) {
+      : materials(setup.damped().options), laws(setup.options, materials) {
     if (!(smallest > 0)) return;
     ParticleSizes sizes(materials.count());
     for (int m = 0; m < materials.count(); ++m) sizes.smallest[m] = smallest, sizes.largest[m] = largest;

@@ -40,8 +40,9 @@ struct Loads {
 };
 
 /// The laws in plain numbers on one contact: the formulas of the headers, without blocks, packs or lists.
-inline Loads loads_of(const ContactLaws& laws, const Contact<double>& contact, const PairProperties& pair, double arm_i,
+inline Loads loads_of(const ContactLaws& laws, Contact<double> contact, const PairProperties& pair, double arm_i,
                       double arm_j, double dt, double* history) {
+  contact.dt = dt;
   const LawSetup& setup = laws.setup();
   const Vec3 n = vec3(contact.normal);
   Loads result;
@@ -77,7 +78,7 @@ inline Loads loads_of(const ContactLaws& laws, const Contact<double>& contact, c
     const double twist = std::decay_t<decltype(model)>::template torque<double>(contact, result.normal, c, dt, memory);
     for (int d = 0; d < 3; ++d) torque[d] += twist * contact.normal[d];
   });
-  result.force = (result.normal.force + result.pull) * n + vec3(tangent);
+  result.force = (result.normal.force + result.normal.jump + result.pull) * n + vec3(tangent);
   result.torque_i = (-arm_i * n).cross(result.force) + vec3(torque);
   result.torque_j = (arm_j * n).cross(-result.force) - vec3(torque);
   return result;
@@ -93,6 +94,7 @@ inline Contact<double> contact_of(const Motion& a, const Motion& b, double& arm_
   contact.overlap = a.radius + b.radius - r;
   contact.effective_radius = a.radius * b.radius / (a.radius + b.radius);
   contact.effective_mass = 1 / (a.inverse_mass + b.inverse_mass);
+  contact.dt = 0;
   contact.radius = a.radius;
   contact.distance = r;
   const auto inertia = [](const Motion& m) { return 1.4 * m.radius * m.radius / m.inverse_mass; };

@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "gas_box.hpp"
@@ -109,4 +113,48 @@ TEST_CASE("A table of a law gives the law's force over gap and over slip, and re
   LawCase without = setup;
   without.set("law_table_motion", "rolling");
   CHECK_THROWS_AS(law_table(without.options), UserError);
+}
+
+TEST_CASE("A table of a field gives the forces of dipoles head to tail, side by side and oblique, and of charges",
+          "[particles]") {
+  const auto table = [](LawCase setup, double angle) {
+    setup.set("law_table_motion", "field").set("law_table_radius", "1e-3").set("law_table_rows", "5");
+    setup.set("law_table_angle", std::to_string(angle));
+    std::string text = law_table(setup.options);
+    std::replace(text.begin(), text.end(), ',', ' ');
+    std::istringstream lines(text.substr(text.find('\n')));
+    std::vector<std::array<double, 4>> rows(5);
+    for (auto& row : rows)
+      for (double& value : row) lines >> value;
+    return rows;
+  };
+  const double pi = std::numbers::pi, moment = 1e5 * 4.0 / 3.0 * pi * 1e-9;
+  for (const double angle : {0.0, 30.0, 54.7356103172, 90.0}) {
+    LawCase dipoles;
+    dipoles.set("magnetic_type", "fixed").set("magnetic_magnetisation", "1e5").set("magnetic_direction", "0, 0, 1");
+    const double theta = angle * pi / 180;
+    for (const auto& [distance, radial, across, torque] : table(dipoles, angle)) {
+      const double size = 3 * 4e-7 * pi * moment * moment / (4 * pi * std::pow(distance, 4));
+      CHECK(radial == Approx(size * (1 - 3 * std::cos(theta) * std::cos(theta))).margin(1e-6 * size));
+      CHECK(across == Approx(-size * std::sin(2 * theta)).margin(1e-6 * size));
+      CHECK(torque == 0);
+    }
+    LawCase turning;
+    turning.set("magnetic_type", "permanent").set("magnetic_magnetisation", "1e5");
+    turning.set("magnetic_direction", "0, 0, 1");
+    for (const auto& [distance, radial, across, torque] : table(turning, angle)) {
+      const double size = 3 * 4e-7 * pi * moment * moment / (8 * pi * std::pow(distance, 3));
+      CHECK(torque == Approx(size * std::sin(2 * theta)).margin(1e-6 * size));
+    }
+  }
+  LawCase charges;
+  charges.set("electric_type", "dc").set("electric_charge", "2e-12").set("electric_coulomb", "yes");
+  charges.set("electric_fluid_permittivity", "2");
+  for (const auto& [distance, radial, across, torque] : table(charges, 20)) {
+    CHECK(radial == Approx(4e-24 / (4 * pi * 2 * 8.8541878128e-12 * distance * distance)).epsilon(1e-6));
+    CHECK(std::abs(across) < 1e-12 * radial);
+    CHECK(torque == 0);
+  }
+  LawCase none;
+  CHECK_THROWS_WITH(law_table(none.set("law_table_motion", "field").options), Catch::Contains("-magnetic_type"));
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -249,4 +250,38 @@ TEST_CASE("The time step resolves the attraction of magnets in contact", "[magne
   soft.engine.add(pair_at(3 * radius * Vec3::UnitX()));
   const double stiffness = 6 * mu0 * moment * moment / (pi * std::pow(2 * radius, 5));
   CHECK(soft.engine.limit.step <= 0.05 * pi * std::sqrt(0.5 * 5000 * volume / stiffness) * (1 + 1e-12));
+}
+
+TEST_CASE("Every magnetic model turns with the scene and gives a free pair opposite forces", "[magnetic][mpi]") {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.8, Vec3(1, -2, 2).normalized()).toRotationMatrix();
+  for (const auto& name : MagneticModels::names()) {
+    if (name == "none") continue;
+    INFO(name);
+    const auto loads = [&](const Eigen::Matrix3d& by) {
+      BoxCase setup = magnets(name);
+      const Vec3 field = by * Vec3(3e4, 5e4, -2e4), axis = by * Vec3(2, -1, 1);
+      const auto text = [](const Vec3& v) { return fmt::format("{:.17g}, {:.17g}, {:.17g}", v[0], v[1], v[2]); };
+      setup.set("magnetic_field", text(field));
+      if (name == "linear" || name == "langevin") setup.set("magnetic_susceptibility", "1.5");
+      if (name == "fixed" || name == "permanent") setup.set("magnetic_direction", text(axis));
+      Magnets run(setup);
+      run.engine.add(pair_at(by * Vec3(1.2, 1.8, 0.9) * radius));
+      run.engine.advance(0, 1e-15);
+      std::vector<double> values(12, 0.0);  // force and torque of both, on all ranks
+      for (int p = 0; p < run.engine.store.owned; ++p) {
+        const int at = 6 * static_cast<int>(run.engine.store.id[p]);
+        for (int d = 0; d < 3; ++d) values[at + d] = run.force(p)[d], values[at + 3 + d] = run.torque(p)[d];
+      }
+      MPI_Allreduce(MPI_IN_PLACE, values.data(), 12, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+      return values;
+    };
+    const auto straight = loads(Eigen::Matrix3d::Identity()), turned = loads(turn);
+    const double size = vec3(straight.data()).norm();
+    CHECK(size > 0);
+    CHECK((vec3(straight.data()) + vec3(&straight[6])).norm() < 1e-12 * size);
+    for (int k = 0; k < 12; k += 3) {
+      const double scale = k % 6 == 0 ? size : size * radius;
+      CHECK((turn * vec3(&straight[k]) - vec3(&turned[k])).norm() < 1e-7 * scale);
+    }
+  }
 }

@@ -241,22 +241,27 @@ TEST_CASE("Where a cylinder meets a cone a sphere feels each once, and the rim o
 
 TEST_CASE("A tangential spring goes on where one wall continues as another", "[walls]") {
   WallContacts contacts(1);
+  const Motion ball = [] {
+    Motion motion{};
+    motion.radius = 1;
+    return motion;
+  }();
   WallPoint point{};
   point.normal[2] = 1;
   contacts.next() = {point};
-  contacts.adopt();
+  contacts.adopt(&ball, 0);
   WallSweep sweep;
   contacts.fill(sweep);
   sweep.history[0] = 0.25;
   point.boundary = 3;
   contacts.next() = {point};
-  contacts.adopt();
+  contacts.adopt(&ball, 0);
   contacts.fill(sweep);
   CHECK(sweep.history[0] == 0.25);
   point.normal[2] = 0;
   point.normal[0] = 1;
   contacts.next() = {point};
-  contacts.adopt();
+  contacts.adopt(&ball, 0);
   contacts.fill(sweep);
   CHECK(sweep.history[0] == 0);
 }

@@ -12,8 +12,11 @@ namespace silt {
 /// k = 3 pi mu d a F, Re = a rho d |u-v| / mu.
 struct BeetstraDrag {
   static constexpr const char* name = "beetstra";
-  static constexpr ModelNote note = {"", "Beetstra et al. 2007", "k = 3 pi mu d a F(a, Re)",
-                                     "creeping packed and dilute limits; terminal velocity"};
+  static constexpr ModelNote note = {
+      "", "Beetstra et al. 2007",
+      "k = 3 pi mu d a F, F = 10 s/a^2 + a^2 (1 + 1.5 s^0.5) + 0.413 Re/(24 a^2) (1/a + 3 a s + "
+      "8.4 Re^-0.343)/(1 + 10^(3 s) Re^(-(1 + 4 s)/2)), s = 1 - a, Re = a rho d |u-v|/mu",
+      "values of OpenFOAM and MFiX-Exa; creeping packed and dilute limits; terminal velocity"};
   void options(OptionGroup&) {}
   double exchange(const FlowAround& flow) const {
     const double a = flow.void_fraction, s = 1 - a, reynolds = std::max(flow.superficial_reynolds(), 1e-12);

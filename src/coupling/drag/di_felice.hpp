@@ -15,10 +15,10 @@ namespace silt {
 /// any other.
 struct DiFeliceDrag {
   static constexpr const char* name = "di_felice";
-  static constexpr ModelNote note = {
-      "(7.92-7.93)", "Di Felice 1994",
-      "single-particle drag in a (u - v), times a^-chi, chi = 3.7 - 0.65 exp(-(1.5 - log10 Re)^2/2)",
-      "chi in both limits and at Re = 10^1.5; terminal velocity"};
+  static constexpr ModelNote note = {"(7.92-7.93)", "Di Felice 1994",
+                                     "single-particle drag (Dallavalle's C_D = (0.63 + 4.8 Re^-0.5)^2, or another) in "
+                                     "a (u - v), times a^-chi, chi = 3.7 - 0.65 exp(-(1.5 - log10 Re)^2/2)",
+                                     "chi in both limits and at Re = 10^1.5; terminal velocity"};
   enum class Single { dallavalle, schiller_naumann, haider_levenspiel, stokes_cunningham };
   void options(OptionGroup& option) {
     std::string law = "dallavalle";

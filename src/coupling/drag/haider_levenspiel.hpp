@@ -23,9 +23,12 @@ struct HaiderLevenspielCoefficients {
 /// diameter of that sphere (7.84), Haider & Levenspiel 1989. Fitted for p >= 0.67 (and disks down to 0.026).
 struct HaiderLevenspielDrag {
   static constexpr const char* name = "haider_levenspiel";
-  static constexpr ModelNote note = {"(7.84-7.87)", "Haider & Levenspiel 1989",
-                                     "C_D = 24/Re (1 + b1 Re^b2) + b3 Re/(b4 + Re), b by sphericity",
-                                     "C_D at Re 0.01, 1, 100, 1000 for sphericity 0.6, 0.8, 1; terminal velocity"};
+  static constexpr ModelNote note = {
+      "(7.84-7.87)", "Haider & Levenspiel 1989",
+      "C_D = 24/Re (1 + b1 Re^b2) + b3 Re/(b4 + Re); of the sphericity p, b1 = exp(2.3288 - "
+      "6.4581 p + 2.4486 p^2), b2 = 0.0964 + 0.5565 p, b3 = exp(4.905 - 13.8944 p + 18.4222 p^2 - "
+      "10.2599 p^3), b4 = exp(1.4681 + 12.2584 p - 20.7322 p^2 + 15.8855 p^3)",
+      "C_D at Re 0.01, 1, 100, 1000 for sphericity 0.6, 0.8, 1; terminal velocity"};
   double sphericity = 1;
   void options(OptionGroup& option) {
     option("sphericity", sphericity, "-", "surface of the sphere of equal volume over the particle's surface",

@@ -13,8 +13,12 @@ namespace silt {
 /// above; F3 = 0.0673 + 0.212 s + 0.0232 / a^5.
 struct KochHillDrag {
   static constexpr const char* name = "koch_hill";
-  static constexpr ModelNote note = {"", "Hill, Koch & Ladd 2001", "k = 3 pi mu d a^2 (F0 + F3 Re/2)",
-                                     "dilute and packed limits, F3; terminal velocity"};
+  static constexpr ModelNote note = {
+      "", "Hill, Koch & Ladd 2001",
+      "k = 3 pi mu d a^2 (F0 + F3 Re/2), F0 = (1 + 3 (s/2)^0.5 + 135/64 s ln s + 16.14 s)/(1 + "
+      "0.681 s - 8.48 s^2 + 8.16 s^3) for s = 1 - a < 0.4, 10 s/a^3 above, F3 = 0.0673 + 0.212 s "
+      "+ 0.0232/a^5, Re = a rho d |u-v|/mu",
+      "values of Lethe; dilute and packed limits, F3; terminal velocity"};
   void options(OptionGroup&) {}
   double exchange(const FlowAround& flow) const {
     const double a = flow.void_fraction, s = std::max(1 - a, 1e-12);

@@ -13,9 +13,11 @@ namespace silt {
 /// 1987), which gives n by iteration; k = V_p beta / (1-a).
 struct MazzaDrag {
   static constexpr const char* name = "mazza";
-  static constexpr ModelNote note = {"", "Mazzei & Lettieri 2007; Rowe 1987",
-                                     "k = V 3/4 C_D(Re/a^n) a rho |u-v|/d a^(2 - 2n)",
-                                     "settling by Richardson & Zaki's law; terminal velocity"};
+  static constexpr ModelNote note = {
+      "", "Mazzei & Lettieri 2007; Rowe 1987",
+      "k = V 3/4 C_D(Re/a^n) a rho |u-v|/d a^(2 - 2n), C_D of Dallavalle, n = (4.8 + 0.42 "
+      "Re*^0.75)/(1 + 0.175 Re*^0.75), Re* = Re/a^n",
+      "settling by Richardson & Zaki's law; terminal velocity"};
   void options(OptionGroup&) {}
   /// Exponent of Richardson & Zaki at the Reynolds number of the single sphere's terminal velocity.
   static double exponent(double reynolds) {

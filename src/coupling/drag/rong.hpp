@@ -14,8 +14,9 @@ struct RongDrag {
   static constexpr const char* name = "rong";
   static constexpr ModelNote note = {
       "", "Rong, Dong & Yu 2013",
-      "Dallavalle in a (u - v), times a^-b, b = 2.65 (a + 1) - (5.3 - 3.5 a) a^2 exp(-(1.5 - log10 Re)^2/2)",
-      "exponent in creeping flow and at Re = 10^1.5; terminal velocity"};
+      "Dallavalle, C_D = (0.63 + 4.8 Re^-0.5)^2, in a (u - v), times a^-b, b = 2.65 (a + 1) - (5.3 - 3.5 a) a^2 "
+      "exp(-(1.5 - log10 Re)^2/2)",
+      "values of PhasicFlow; exponent in creeping flow and at Re = 10^1.5; terminal velocity"};
   void options(OptionGroup&) {}
   double exchange(const FlowAround& flow) const {
     const double a = flow.void_fraction, reynolds = flow.superficial_reynolds();

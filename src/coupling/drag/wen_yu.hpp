@@ -9,7 +9,8 @@ namespace silt {
 /// Schiller & Naumann at Re = a rho d |u-v| / mu  (7.99).
 struct WenYuDrag {
   static constexpr const char* name = "wen_yu";
-  static constexpr ModelNote note = {"(7.99)", "Wen & Yu 1966", "k = 3 pi mu d (1 + 0.15 Re^0.687) a^-2.65",
+  static constexpr ModelNote note = {"(7.99)", "Wen & Yu 1966",
+                                     "k = 3 pi mu d f(Re) a^-2.65, f of schiller_naumann, Re = a rho d |u-v|/mu",
                                      "beta of all particles in a volume; terminal velocity"};
   void options(OptionGroup&) {}
   double exchange(const FlowAround& flow) const {

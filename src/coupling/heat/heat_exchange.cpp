@@ -1,7 +1,5 @@
 #include "coupling/heat/heat_exchange.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -112,12 +110,7 @@ void HeatExchange::after_fluid(double dt, double depth, const Filter& filter, co
   exchanged_ = sums[4];
   const double imbalance = std::max(std::abs(ledger_.received + ledger_.given),
                                     std::abs(ledger_.response_on_particles + ledger_.response_on_fluid));
-  ledger_.residual = exchanged_ > 0 ? imbalance / exchanged_ : 0;
-  if (!(ledger_.residual <= exchange_tolerance))
-    throw RunError(
-        fmt::format("the heat exchanged between fluid and particles is out of balance by {:.3g} of what was exchanged, "
-                    "allowed {:.0e}",
-                    ledger_.residual, exchange_tolerance));
+  ledger_.residual = balanced("the heat exchanged between fluid and particles", imbalance, exchanged_);
 }
 
 }  // namespace silt

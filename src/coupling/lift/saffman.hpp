@@ -19,9 +19,11 @@ struct NoSaffmanLift {
 /// f = (1 - 0.3314 b^1/2) exp(-Re/10) + 0.3314 b^1/2 for Re <= 40, 0.0524 (b Re)^1/2 above.
 struct SaffmanMeiLift {
   static constexpr const char* name = "saffman_mei";
-  static constexpr ModelNote note = {"", "Saffman 1965; Mei 1992",
-                                     "F = 1.615 d^2 (rho mu/|curl u|)^1/2 f (u - v) x curl u",
-                                     "force at three slips in a shear flow; path of a sinking particle"};
+  static constexpr ModelNote note = {
+      "", "Saffman 1965; Mei 1992",
+      "F = 1.615 d^2 (rho mu/|curl u|)^1/2 f (u - v) x curl u; b = d |curl u|/(2 |u - v|), f = (1 - "
+      "0.3314 b^0.5) exp(-Re/10) + 0.3314 b^0.5 for Re <= 40, 0.0524 (b Re)^0.5 above",
+      "force at three slips in a shear flow; path of a sinking particle"};
   void options(OptionGroup&) {}
   static double correction(double reynolds, double b) {
     if (reynolds > 40) return 0.0524 * std::sqrt(b * reynolds);

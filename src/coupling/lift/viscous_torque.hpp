@@ -29,8 +29,11 @@ struct StokesTorque {
 /// Re_R = rho d^2 |W| / mu; C_R = 64 pi/Re_R up to Re_R = 32, 12.9 Re_R^-1/2 + 128.4/Re_R above.
 struct DennisTorque {
   static constexpr const char* name = "dennis";
-  static constexpr ModelNote note = {"(3.289)", "Dennis, Singh & Ingham 1980", "M = (rho/2) (d/2)^5 C_R |W| W",
-                                     "torque at Re_R = 200; decay of a fast spin"};
+  static constexpr ModelNote note = {
+      "(3.289)", "Dennis, Singh & Ingham 1980",
+      "M = (rho/2) (d/2)^5 C_R |W| W, W = curl u/2 - w, Re_R = rho d^2 |W|/mu, C_R = 64 pi/Re_R "
+      "up to 32, 12.9 Re_R^-0.5 + 128.4/Re_R above",
+      "torque at Re_R = 200; decay of a fast spin"};
   void options(OptionGroup&) {}
   double exchange(const ShearFlow& flow) const {
     const double reynolds = flow.density * flow.diameter * flow.diameter * flow.relative_spin().norm() / flow.viscosity;

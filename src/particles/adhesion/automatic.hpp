@@ -11,7 +11,7 @@ struct AutomaticAdhesion {
   static constexpr ModelNote note{"(7.53)", "Tabor 1977",
                                   "dmt where (4 R_eff g^2/(E_eff^2 D^3))^(1/3) < 0.1, else jkr (a notice below 3)",
                                   "takes dmt and jkr on their sides"};
-  static constexpr bool extended = false;
+  static constexpr bool extended = false, jumps = true;
   AdhesionOptions shared;
   void options(OptionGroup& option) { shared.options(option); }
 
@@ -27,16 +27,18 @@ struct AutomaticAdhesion {
     return {Jkr{shared}.constants(pair), Dmt{shared}.constants(pair), tabor < tabor_hard ? 1.0 : 0.0};
   }
   template <class Real>
-  using History = Jkr::History<Real>;
+  struct History {
+    Jkr::History<Real> soft;
+    Dmt::History<Real> hard;
+  };
 
   template <class Real>
   static SILT_INLINE void adhere(const Contact<Real>& contact, const Constants<Real>& c, History<Real>& history,
                                  NormalLoad<Real>& load, Real& pull) {
     NormalLoad<Real> hard = load;
-    Dmt::History<Real> none;
     Real hard_pull;
-    Dmt::adhere(contact, c.hard, none, hard, hard_pull);
-    Jkr::adhere(contact, c.soft, history, load, pull);
+    Dmt::adhere(contact, c.hard, history.hard, hard, hard_pull);
+    Jkr::adhere(contact, c.soft, history.soft, load, pull);
     const auto is_hard = c.is_hard > Real(0.0);
     load.force = select(is_hard, hard.force, load.force);
     load.contact_radius = select(is_hard, hard.contact_radius, load.contact_radius);

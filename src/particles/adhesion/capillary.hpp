@@ -27,7 +27,7 @@ struct CapillaryBridge {
                                   "= (1 + theta/2)(1 + sqrt(Ca)) V^(1/3), or with V/(4 R_eff^2)",
                                   "force and rupture distance of a pair drawn apart; liquid of films and bridges "
                                   "constant to round-off on any ranks"};
-  static constexpr bool extended = false;
+  static constexpr bool extended = false, jumps = true;
   std::optional<double> surface_tension, roughness, liquid_content;
   double contact_angle = 0, viscosity = 0;
   std::string rupture = "lian";
@@ -63,7 +63,9 @@ struct CapillaryBridge {
   template <class Real>
   struct History {
     Real given_i, given_j;  ///< m3, liquid that the partners gave to the bridge; none where there is no bridge
-    Real asked;             ///< 1 in the step after touching, when the partners' offers are gathered
+    Real asked;             ///< in the step after touching, when the partners' offers are gathered: 1 and the share of
+                            ///< a step since they touched
+    Real jump;              ///< N, makes good that the bridge formed or broke within the step (force_jump.hpp)
   };
 
   template <class Real>
@@ -73,7 +75,7 @@ struct CapillaryBridge {
     const Real wide = volume / (Real(std::numbers::pi) * radius * gap * gap);
     const Real shape = select(contact.overlap >= zero, one, one - one / sqrt(one + wide));
     const Real viscous = c.viscosity * radius * radius * shape * shape * contact.approach / larger(gap, c.roughness);
-    return select(volume > zero, viscous - c.tension * radius * shape, zero);
+    return select(volume > zero, viscous - c.tension * radius * shape, zero) + history.jump;
   }
 
   /// m, gap at which a bridge of volume V between R_eff breaks, at the capillary number Ca.

@@ -5,6 +5,7 @@
 #include "base/models.hpp"
 #include "particles/adhesion/adhesion_options.hpp"
 #include "particles/contact.hpp"
+#include "particles/force_jump.hpp"
 #include "particles/materials.hpp"
 
 namespace silt {
@@ -26,7 +27,7 @@ struct Jkr {
       "g R_eff^2/E_eff)^(1/3); made at x = 0, broken at x = -a0^2/(2 6^(1/3) R_eff)",
       "pull-off 3 pi g R_eff; -(8/9) of it at x = 0, -(5/9) at the break; work 7.09 (w^5 R_eff^4/E_eff^2)^(1/3) lost a "
       "cycle, sticking speed"};
-  static constexpr bool extended = false;
+  static constexpr bool extended = false, jumps = true;
   AdhesionOptions shared;
   void options(OptionGroup& option) { shared.options(option); }
 
@@ -66,7 +67,8 @@ struct Jkr {
     const Real square = larger(size * size, Real(1e-20) * radius * radius);  // without surface energy: Hertz
     const Real y = Real(2.0) * radius * x / square;
     const Real least(-0.5503212081491045);  // -6^(-1/3), where the neck breaks
-    history.made = select(x >= zero, one, select(y < least, zero, history.made));
+    const Real before = history.made;
+    history.made = select(x >= zero, one, select(y < least, zero, before));
     const auto holds = history.made > zero;
     const Real u = root_of_neck(larger(y, least));
     const Real a = sqrt(square) * u * u, cube = u * u * u, pull_off = c.pull_off * radius;
@@ -80,6 +82,11 @@ struct Jkr {
     const Real widen = Real(2.0) * a / radius * larger(one - Real(1.0 / 6.0) / cube, Real(0.05));
     load.stiffness = select(holds, rise / widen, zero);
     split_load(load, net, c.friction_share, pull);
+    // It is made with -(8/9) F_c and breaks at -(5/9) F_c, within a step.
+    const Real past = select(holds, x, Real(0.5) * square / radius * (least - y));
+    const Real jump =
+        Real(-8.0 / 9.0) * larger(history.made - before, zero) + Real(5.0 / 9.0) * larger(before - history.made, zero);
+    pull = pull + made_good(jump * pull_off, past, magnitude(contact.approach), contact.dt);
   }
 
   /// m, gap to which a neck stretches.

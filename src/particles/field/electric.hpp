@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 
+#include "base/models.hpp"
 #include "particles/field/clausius_mossotti.hpp"
 #include "particles/field/given_field.hpp"
 #include "particles/force_field.hpp"
@@ -8,6 +9,30 @@
 #include "particles/potential.hpp"
 
 namespace silt {
+
+/// What `-electric_...` switches on.
+inline constexpr SwitchedModel electric_models[] = {
+    {"dc",
+     "electric_type dc",
+     {"(7.65-7.70)", "Pohl 1978; Jones 1995",
+      "F = Q E + grad(p.E), M = p_0 x E, p = p_0 + (pi/2) e_f K d^3 E, K = (e_p - e_f)/(e_p + 2 e_f), or of "
+      "conductivities",
+      "forces of uniform and parabolic fields; a dipole that swings; both signs of K"}},
+    {"ac",
+     "electric_type ac",
+     {"(7.71-7.76)", "Pohl 1978; Jones 1995",
+      "F = (pi/4) e_f d^3 Re K grad(E_rms^2), M = -(pi/2) e_f d^3 Im K E_rms^2 n, K(w) = [e_p - e_f - j (l_p - "
+      "l_f)/w]/[e_p "
+      "+ 2 e_f - j (l_p + 2 l_f)/w]",
+      "both limits of K and the time t_MW between them; speed of drift and of rotation"}},
+    {"coulomb",
+     "electric_coulomb yes",
+     {"", "Coulomb 1785", "F = Q_i Q_j/(4 pi e_f r^2), all pairs or up to a cut-off", "two charges fly apart"}},
+    {"solved",
+     "electric_solve yes",
+     {"", "", "-div(e_f grad phi) = rho on the mesh, E = -grad phi",
+      "order 2 of potential and field; force in a coaxial cell"}},
+};
 
 /// The options `-electric_...`.
 struct ElectricOptions {

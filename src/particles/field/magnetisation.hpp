@@ -97,38 +97,34 @@ struct LangevinMagnetism {
   double largest(double volume) const { return magnetisation * volume; }
 };
 
-/// A moment that is fixed in the particle and turns with it.
-struct PermanentMagnetism {
-  static constexpr const char* name = "permanent";
-  static constexpr ModelNote note = {"(7.77-7.80)", "", "m = M V, turns with the particle",
-                                     "swing in a field, second order; angular momentum of a pair"};
+/// What magnets have in common that bring their moment along.
+struct MagnetisedBody {
   double magnetisation = 0;
   void options(OptionGroup& option) {
-    option("magnetisation", magnetisation, "A/m", "magnetisation M, fixed in the particle", non_negative);
+    option("magnetisation", magnetisation, "A/m", "magnetisation M of the particle", non_negative);
   }
   void check() const {
-    if (!(magnetisation > 0)) throw UserError("-magnetic_magnetisation is missing: -magnetic_type permanent needs it");
+    if (!(magnetisation > 0))
+      throw UserError("-magnetic_magnetisation is missing: -magnetic_type permanent and fixed need it");
   }
-  MomentFollows follows() const { return MomentFollows::body; }
   Vec3 moment(const Vec3&, double) const { return Vec3::Zero(); }
   double largest(double volume) const { return magnetisation * volume; }
 };
 
+/// A moment that is fixed in the particle and turns with it.
+struct PermanentMagnetism : MagnetisedBody {
+  static constexpr const char* name = "permanent";
+  static constexpr ModelNote note = {"(7.77-7.80)", "", "m = M V, turns with the particle",
+                                     "swing in a field, second order; angular momentum of a pair"};
+  MomentFollows follows() const { return MomentFollows::body; }
+};
+
 /// A moment that never changes.
-struct FixedMagnetism {
+struct FixedMagnetism : MagnetisedBody {
   static constexpr const char* name = "fixed";
   static constexpr ModelNote note = {"(7.77-7.80)", "", "m = M V, fixed in space",
                                      "force of a field gradient; repulsion of a pair"};
-  double magnetisation = 0;
-  void options(OptionGroup& option) {
-    option("magnetisation", magnetisation, "A/m", "magnetisation M, fixed in space", non_negative);
-  }
-  void check() const {
-    if (!(magnetisation > 0)) throw UserError("-magnetic_magnetisation is missing: -magnetic_type fixed needs it");
-  }
   MomentFollows follows() const { return MomentFollows::nothing; }
-  Vec3 moment(const Vec3&, double) const { return Vec3::Zero(); }
-  double largest(double volume) const { return magnetisation * volume; }
 };
 
 using MagneticModels =

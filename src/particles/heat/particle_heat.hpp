@@ -3,12 +3,26 @@
 #include <optional>
 
 #include "base/expression.hpp"
+#include "base/models.hpp"
 #include "base/options.hpp"
 #include "particles/contact_lists.hpp"
 #include "particles/materials.hpp"
 #include "particles/store.hpp"
 
 namespace silt {
+
+/// What `-heat_...` switches on.
+inline constexpr SwitchedModel heat_models[] = {
+    {"source", "heat_source", {"(7.95)", "", "m c_p dT/dt = q V", "warming of a sphere"}},
+    {"conduction",
+     "heat_conduction yes",
+     {"", "Batchelor & O'Brien 1977",
+      "Q_ij = 4 a (T_j - T_i)/(1/l_i + 1/l_j), a = (R_eff x)^0.5 or of the lens, times (E/E_real)^0.2",
+      "two spheres that even out (MFiX)"}},
+    {"radiation",
+     "heat_emissivity",
+     {"", "Stefan 1879; Boltzmann 1884", "Q = e sigma A (T_env^4 - T^4)", "cooling of a glowing sphere"}},
+};
 
 /// The options `-heat_...` of the particles.
 struct HeatOptions {

@@ -39,6 +39,9 @@ struct KuwabaraKono {
           "not both");
   }
 
+  /// What decides the energy lost in place of the restitution; null where the restitution does.
+  const char* loss() const { return root_damping ? "-normal_root_damping" : "-normal_relaxation_time"; }
+
   template <class Real>
   struct Constants {
     Real stiffness;     ///< Pa, 4/3 E_eff

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/models.hpp"
 #include "particles/contact.hpp"
+#include "particles/force_jump.hpp"
 #include "particles/materials.hpp"
 #include "particles/normal/hertz.hpp"
 
@@ -19,7 +20,7 @@ struct LeeHerrmann {
       "(7.11)", "Lee & Herrmann 1993",
       "F = k x^1.5 + gamma dx/dt, k = 4/3 E_eff sqrt(R_eff); gamma or gamma/m_eff is given",
       "the restitution of the scaled equation x'' = -x^1.5 - c x'; faster impacts lose less"};
-  static constexpr bool extended = false, hertzian = true, hertz_spring = true;
+  static constexpr bool extended = false, hertzian = true, hertz_spring = true, jumps = true;
   std::optional<double> damping, damping_rate;
   bool no_attraction = false;
 
@@ -34,6 +35,9 @@ struct LeeHerrmann {
           "-normal_type lee_herrmann needs one of -normal_damping (kg/s) and -normal_damping_rate (1/s), not both");
   }
 
+  /// What decides the energy lost in place of the restitution; null where the restitution does.
+  const char* loss() const { return damping ? "-normal_damping" : "-normal_damping_rate"; }
+
   template <class Real>
   struct Constants {
     Real stiffness;     ///< Pa, 4/3 E_eff
@@ -47,18 +51,21 @@ struct LeeHerrmann {
   }
 
   template <class Real>
-  struct History {};
+  using History = Meeting<Real>;
 
   template <class Real>
-  static SILT_INLINE NormalLoad<Real> load(const Contact<Real>& contact, const Constants<Real>& c, History<Real>&) {
+  static SILT_INLINE NormalLoad<Real> load(const Contact<Real>& contact, const Constants<Real>& c,
+                                           History<Real>& history) {
     NormalLoad<Real> load;
     const Real zero(0.0), overlap = larger(contact.overlap, zero);
     load.contact_radius = sqrt(contact.effective_radius * overlap);
     const Real stiffness = c.stiffness * load.contact_radius;
     load.stiffness = Real(1.5) * stiffness;
-    load.damping = select(overlap > zero, c.damping + c.damping_rate * contact.effective_mass, zero);
+    const Real damping = c.damping + c.damping_rate * contact.effective_mass;
+    load.damping = select(overlap > zero, damping, zero);
     const Real force = larger(stiffness * overlap + load.damping * contact.approach, c.least_force);
     load.force = select(overlap > zero, force, zero);
+    load.jump = jump_at_meeting(contact, contact.overlap, larger(damping * contact.approach, c.least_force), history);
     return load;
   }
 

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/models.hpp"
 #include "particles/contact.hpp"
+#include "particles/force_jump.hpp"
 #include "particles/materials.hpp"
 #include "particles/normal/normal_load.hpp"
 
@@ -20,7 +21,7 @@ struct LennardJones {
   static constexpr ModelNote note{"(7.1-7.3)", "Aoki & Akiyama 1995",
                                   "F = eps [12 d^12/X^13 - 6 d^6/X^7] + m_eff gamma dx/dt for X < 2^(1/6) d",
                                   "6 eps/d at X = d; closest approach and energy of an elastic collision"};
-  static constexpr bool extended = true, hertzian = false, hertz_spring = false;
+  static constexpr bool extended = true, hertzian = false, hertz_spring = false, jumps = true;
   std::optional<double> energy;
   double damping_rate = 0;
   void options(OptionGroup& option) {
@@ -31,23 +32,30 @@ struct LennardJones {
     if (!energy) throw UserError("-normal_type lennard_jones needs -normal_energy (J, positive)");
   }
 
+  /// What decides the energy lost in place of the restitution; null where the restitution does.
+  const char* loss() const { return "-normal_damping_rate"; }
+
   template <class Real>
   struct Constants {
     Real energy, damping_rate;
   };
   Constants<double> constants(const PairProperties&) const { return {*energy, damping_rate}; }
   template <class Real>
-  struct History {};
+  using History = Meeting<Real>;
 
   template <class Real>
-  static SILT_INLINE NormalLoad<Real> load(const Contact<Real>& contact, const Constants<Real>& c, History<Real>&) {
+  static SILT_INLINE NormalLoad<Real> load(const Contact<Real>& contact, const Constants<Real>& c,
+                                           History<Real>& history) {
     NormalLoad<Real> load;
     const Real zero(0.0), one(1.0);
     const Real inverse = one / contact.distance, q = (contact.distance + contact.overlap) * inverse;
     const Real cube = q * q * q, six = cube * cube;
     const auto acts = six > Real(0.5);
     const Real scale = c.energy * six * inverse;
-    load.damping = select(acts, contact.effective_mass * c.damping_rate, zero);
+    const Real damping = contact.effective_mass * c.damping_rate;
+    const Real depth = Real(1.122462048309373) * (contact.distance + contact.overlap) - contact.distance;
+    load.damping = select(acts, damping, zero);
+    load.jump = jump_at_meeting(contact, depth, damping * contact.approach, history);
     load.force = select(acts, scale * (Real(12.0) * six - Real(6.0)), zero) + load.damping * contact.approach;
     load.stiffness = select(acts, scale * inverse * (Real(156.0) * six - Real(42.0)), zero);
     load.contact_radius = sqrt(contact.effective_radius * larger(contact.overlap, zero));

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/models.hpp"
 #include "particles/contact.hpp"
+#include "particles/force_jump.hpp"
 #include "particles/materials.hpp"
 #include "particles/normal/normal_load.hpp"
 
@@ -20,7 +21,7 @@ struct Linear {
   static constexpr ModelNote note{"(7.7-7.10)", "Tsuji et al. 1993; Schafer et al. 1996",
                                   "F = k x + gamma dx/dt; k and gamma, or the restitution e with k or the contact time",
                                   "restitution and contact time as given, to second order in the step"};
-  static constexpr bool extended = false, hertzian = false, hertz_spring = false;
+  static constexpr bool extended = false, hertzian = false, hertz_spring = false, jumps = true;
   std::optional<double> stiffness, damping, contact_time;
   bool no_attraction = false;
 
@@ -36,6 +37,9 @@ struct Linear {
     if (contact_time && damping)
       throw UserError("-normal_damping goes with -normal_stiffness, not -normal_contact_time");
   }
+
+  /// What decides the energy lost in place of the restitution; null where the restitution does.
+  const char* loss() const { return damping ? "-normal_damping" : nullptr; }
 
   template <class Real>
   struct Constants {
@@ -62,10 +66,11 @@ struct Linear {
   }
 
   template <class Real>
-  struct History {};
+  using History = Meeting<Real>;
 
   template <class Real>
-  static SILT_INLINE NormalLoad<Real> load(const Contact<Real>& contact, const Constants<Real>& c, History<Real>&) {
+  static SILT_INLINE NormalLoad<Real> load(const Contact<Real>& contact, const Constants<Real>& c,
+                                           History<Real>& history) {
     NormalLoad<Real> load;
     const Real zero(0.0), overlap = larger(contact.overlap, zero);
     const Real k = c.stiffness + c.stiffness_per_mass * contact.effective_mass;
@@ -74,6 +79,7 @@ struct Linear {
     load.damping = select(overlap > zero, damping, zero);
     const Real force = larger(k * overlap + load.damping * contact.approach, c.least_force);
     load.force = select(overlap > zero, force, zero);
+    load.jump = jump_at_meeting(contact, contact.overlap, larger(damping * contact.approach, c.least_force), history);
     load.contact_radius = sqrt(contact.effective_radius * overlap);
     return load;
   }

@@ -26,6 +26,9 @@ struct Thornton {
   static constexpr bool extended = false, hertzian = true, hertz_spring = false;
   void options(OptionGroup&) {}
 
+  /// What decides the energy lost in place of the restitution; null where the restitution does.
+  const char* loss() const { return "the yield pressure"; }
+
   template <class Real>
   struct Constants {
     Real stiffness;  ///< Pa, 4/3 E_eff

@@ -41,6 +41,11 @@ struct WaltonBraun {
       throw UserError("-normal_unloading_stiffness must not be below -normal_stiffness: the contact would gain energy");
   }
 
+  /// What decides the energy lost in place of the restitution; null where the restitution does.
+  const char* loss() const {
+    return unloading_stiffness ? "-normal_unloading_stiffness" : hardening ? "-normal_hardening" : nullptr;
+  }
+
   template <class Real>
   struct Constants {
     Real loading;    ///< N/m, k_l

@@ -86,13 +86,13 @@ void Walls::list(const Motion* particles, int count, double skin, double gap) {
   }
 }
 
-void Walls::points(const Motion* particles, double time, std::vector<WallPoint>& points) const {
+void Walls::points(const Motion* particles, double time, std::vector<WallPoint>& points, double beyond) const {
   points.clear();
   const int boundaries = static_cast<int>(boundaries_.size());
   for (size_t n = 0; n < near_.size();) {
     const int i = near_[n].particle;
     const Vec3 centre = vec3(particles[i].position);
-    const double radius = particles[i].radius + gap_;
+    const double radius = particles[i].radius + gap_ + beyond;
     const size_t first = points.size();
     int rigid = 0;
     for (; n < near_.size() && near_[n].particle == i; ++n) {

@@ -46,8 +46,8 @@ class Walls {
   /// below that too. Local.
   void list(const Motion* particles, int count, double skin, double gap = 0);
   /// The points of walls nearer to each particle than its radius and the gap of list(), ordered by particle; replaces
-  /// `points`. Local.
-  void points(const Motion* particles, double time, std::vector<WallPoint>& points) const;
+  /// `points`. With `beyond` (m) also those further by that much, as far as they are listed. Local.
+  void points(const Motion* particles, double time, std::vector<WallPoint>& points, double beyond = 0) const;
 
   /// Whether any wall is driven by the force on it.
   bool servo() const;
