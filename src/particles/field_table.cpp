@@ -35,7 +35,7 @@ std::string field_table(Options& options, const LawTableOptions& chosen) {
     motion.inverse_mass = 1 / (*materials[0].density * 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3));
     store.columns.start(p, seed);
   }
-  store.place_dummies();
+  store.place_padding();
   const double angle = chosen.angle * std::numbers::pi / 180;
   const Vec3 along(std::sin(angle), 0, std::cos(angle)), across(std::cos(angle), 0, -std::sin(angle));
   std::string text = "distance,radial,across,torque\n";
