@@ -36,7 +36,7 @@ class Turbulence {
     std::span<const double> viscosity;      ///< [nodes] Pa s, molecular
     std::span<const double> void_fraction;  ///< [nodes]
     std::span<const double> source = {};    ///< [nodes] W, load vector: work of particles that becomes k; empty: none
-    bool compressible = false;              ///< dilatation of the flow does work on k (T26)
+    bool compressible = false;              ///< dilatation of the flow does work on k (C18)
   };
 
   /// Reads `-fluid_turbulence...` and `-boundary_<name>_turbulence_...`; null for `none`. Collective.
