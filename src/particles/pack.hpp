@@ -54,8 +54,20 @@ SILT_INLINE void store(double* p, Pack a) { *reinterpret_cast<Vector*>(p) = a.v;
 SILT_INLINE void store_unaligned(double* p, Pack a) { __builtin_memcpy(p, &a.v, sizeof a.v); }
 
 #if SILT_LANES == 8
+/// The processor's own root of eight doubles takes about 24 cycles, and all laws wait for it; a step of Goldschmidt
+/// from 14 to 28 bits and one of Newton on the remainder give the same but for the last bit in about 5.
+SILT_INLINE Pack sqrt(Pack a) {
+  const __m512d x = __m512d(a.v), half = _mm512_set1_pd(0.5);
+  const __m512d guess = _mm512_maskz_rsqrt14_pd(0xff, x);
+  __m512d root = x * guess, half_inverse = half * guess;
+  const __m512d off = _mm512_fnmadd_pd(root, half_inverse, half);
+  root = _mm512_fmadd_pd(root, off, root);
+  half_inverse = _mm512_fmadd_pd(half_inverse, off, half_inverse);
+  root = _mm512_fmadd_pd(_mm512_fnmadd_pd(root, root, x), half_inverse, root);
+  const __mmask8 itself = _mm512_fpclass_pd_mask(x, 0x0e);  // zeros and infinity
+  return Vector(_mm512_mask_blend_pd(itself, root, x));
+}
 // With a mask of all lanes: without one, g++ 12 warns of the undefined vector that the header hands on.
-SILT_INLINE Pack sqrt(Pack a) { return Vector(_mm512_maskz_sqrt_pd(0xff, __m512d(a.v))); }
 SILT_INLINE Pack nearest(Pack a) { return Vector(_mm512_maskz_roundscale_pd(0xff, __m512d(a.v), 8)); }
 /// Bit k is set where lane k of the mask is.
 SILT_INLINE unsigned lane_bits(Mask a) { return _mm512_movepi64_mask(__m512i(a.bits)); }
