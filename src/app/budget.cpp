@@ -111,7 +111,7 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeA
     const Vec3 through = moment.dt * moment.fluid_step.boundary_force;
     Vec3 unaccounted = Vec3::Zero();
     if (fluid_known_) {
-      unaccounted = moment.fluid_step.momentum - fluid_momentum_ - through;
+      unaccounted = moment.fluid_step.momentum + moment.fluid_step.lent - fluid_momentum_ - through;
       if (exchange) unaccounted -= exchange->drag_on_fluid + exchange->response_on_fluid + exchange->pressure_on_fluid;
     }
     add(row, moment.fluid_step.momentum);
@@ -124,7 +124,7 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeA
                              particles ? particles->kinetic_energy() + particles->rotational_energy() : 0});
       fluid_energy_ = energy;
     }
-    fluid_momentum_ = moment.fluid_step.momentum;
+    fluid_momentum_ = moment.fluid_step.momentum + moment.fluid_step.lent;
     fluid_known_ = true;
   }
   if (with_particles_) {

@@ -9,6 +9,7 @@
 #include "coupling/fluid_forces.hpp"
 #include "coupling/heat/nusselt.hpp"
 #include "coupling/thermophoresis.hpp"
+#include "coupling/turbulence_modulation.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
 #include "fluid/boundary/drive.hpp"
 #include "fluid/compressible/compressible.hpp"
@@ -103,6 +104,7 @@ Options everything() {
   declare(options, "thermophoresis", ThermophoresisModels{}, "force by a temperature gradient of the gas");
   declare<ThermophoresisOptions>(options, "thermophoresis");
   declare(options, "dispersion", DispersionModels{}, "turbulent dispersion of particles");
+  declare(options, "modulation", ModulationModels{}, "what particles do to the fluid's turbulence");
   declare(options, "nusselt", NusseltModels{}, "heat transfer between fluid and particles");
   declare<CouplingOptions>(options, "coupling");
   declare<OutputOptions>(options, "output");
@@ -140,6 +142,7 @@ void each_model(Act&& act) {
   each_of("viscous_torque", ViscousTorqueModels{}, act);
   each_of("thermophoresis", ThermophoresisModels{}, act);
   each_of("dispersion", DispersionModels{}, act);
+  each_of("modulation", ModulationModels{}, act);
   each_of("nusselt", NusseltModels{}, act);
   each_of("magnetic", MagneticModels{}, act);
 }

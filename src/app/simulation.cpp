@@ -163,8 +163,12 @@ int Simulation::run() {
   start();
   while (now_.time < time_options_.end * (1 - 1e-12)) {
     choose_step();
-    step();
-    report();
+    try {
+      step();
+      report();
+    } catch (const RunError& error) {
+      throw RunError(error.what() + save_last_good());
+    }
     if (checkpoint_->due(now_.time)) write_checkpoint("checkpoint.h5");
     if (balance_->due(now_.time) && uneven()) return share_out_anew;
   }
@@ -226,11 +230,17 @@ void Simulation::choose_step() {
 
 /// Remembers the state before a step. Without a fluid, which may ask to go back, not before every short one.
 void Simulation::keep_state() {
-  fluid_moved_ = false;
   constexpr int worth_a_copy = 200;
   if (particles_ && !fluid_ && good_.particles && substeps_since_good_ < worth_a_copy) return;
   good_.particles.reset();  // first the room, then the copy
   if (particles_) good_.particles = particles_->snapshot(fluid_ != nullptr);
+  if (fluid_) good_.flow = fluid_->kept();
+  if (coupling_) {
+    good_.exchange.clear();
+    for (const auto& array : coupling_->state()) good_.exchange.push_back(*array.values);
+    good_.largest_diameter = coupling_->largest_diameter();
+    good_.last_step = coupling_->last_step();
+  }
   good_.profiles = *profiles_;
   good_.clock = {now_.time, now_.dt, shortened_, now_.step};
   substeps_since_good_ = 0;
@@ -248,20 +258,23 @@ void Simulation::step() {
       dt_ *= 0.5;
       shortened_ = dt_;
       if (dt_ < time_options_.least_step)
-        throw RunError(fmt::format("the step at t = {:g} s failed down to {:g} s (-time_least_step): {}{}", now_.time,
-                                   2 * dt_, failure.what(), save_last_good()));
+        throw RunError(fmt::format("the step at t = {:g} s failed down to {:g} s (-time_least_step): {}", now_.time,
+                                   2 * dt_, failure.what()));
       progress_->line(fmt::format("t = {:g} s: {}; trying a step of {:g} s", now_.time, failure.what(), dt_));
       if (particles_) particles_->restore(*good_.particles);
-    } catch (const RunError& error) {
-      throw RunError(error.what() + save_last_good());
     }
   }
 }
 
 std::string Simulation::save_last_good() {
-  if (fluid_moved_) return "";
   try {
     if (particles_) particles_->restore(*good_.particles);
+    if (fluid_) fluid_->go_back(good_.flow);
+    if (coupling_) {
+      const auto arrays = coupling_->state();
+      for (std::size_t k = 0; k < arrays.size(); ++k) *arrays[k].values = good_.exchange[k];
+      coupling_->restored(good_.largest_diameter, good_.last_step);
+    }
     now_.time = good_.clock.time, now_.dt = good_.clock.dt, now_.step = good_.clock.step;
     shortened_ = good_.clock.shortened;
     *profiles_ = *good_.profiles;
@@ -324,7 +337,6 @@ void Simulation::attempt() {
   if (fluid_) {
     const Stopwatch watch(*this, solving_fluid);
     now_.fluid_step = fluid_->advance(now_.time, dt_);
-    fluid_moved_ = true;
   }
   if (coupling_) {
     const Stopwatch watch(*this, exchanging);
@@ -355,6 +367,8 @@ void Simulation::report() {
     probes_->write_lines(now_);
     profiles_->write(output_->directory());
   }
+  if (coupling_)
+    if (const std::string warning = coupling_->take_warning(); !warning.empty()) progress_->line(warning);
   progress_->step(now_);
 }
 

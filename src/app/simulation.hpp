@@ -117,11 +117,12 @@ class Simulation {
   struct Good {
     std::shared_ptr<const Particles::Snapshot> particles;
     std::optional<Profiles> profiles;
+    std::vector<std::vector<double>> flow, exchange;  ///< arrays of fluid and coupling
+    double largest_diameter = 0, last_step = 0;       ///< of the coupling
     RunClock clock;
   };
   Good good_;
   int substeps_since_good_ = 0;
-  bool fluid_moved_ = false;  ///< in the present attempt: there is no going back for the fluid
 
   Moment now_;
   double dt_ = 0;         ///< s, the coming step

@@ -31,7 +31,7 @@ class GlobalSums {
   std::vector<double> values_;
 };
 
-constexpr int load_components = 5;  // volume, response, impulse
+constexpr int load_components = 6;  // volume, response, impulse, volume that follows
 
 }  // namespace
 
@@ -50,6 +50,7 @@ Coupling::Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options
   forces_ = std::make_unique<FluidForces>(mesh, mass_, options, options_.viscous_stress);
   thermophoresis_ = Thermophoresis::create(mesh, mass_, fluid, options);
   dispersion_ = Dispersion::create(fluid, particles, options);
+  modulation_ = TurbulenceModulation::create(mesh, mass_, fluid, options);
   if (particles.has_heat() && !fluid.temperature().empty())
     heat_ = std::make_unique<HeatExchange>(mesh, mass_, particles, fluid, options);
   if (fluid.total_energy()) work_ = std::make_unique<WorkExchange>(mesh, mass_, particles, fluid);
@@ -58,7 +59,7 @@ Coupling::Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options
       throw UserError("coupling_depth: give the thickness in m that the 2D mesh stands for; particles have a volume");
     depth_ = *options_.depth;
   }
-  start();
+  take_void_fraction();
 }
 
 Coupling::~Coupling() = default;
@@ -116,6 +117,19 @@ void Coupling::place_clamped(int p, int cell, const Vec3& x) {
 }
 
 void Coupling::start() {
+  take_void_fraction();
+  const int count = particles_.owned();
+  at_particles_.resize(3 * static_cast<std::size_t>(count));
+  for (int p = 0; p < count; ++p)
+    for (int d = 0; d < 3; ++d) at_particles_[3 * p + d] = particles_.volume(p) * particles_.velocity(p)[d];
+  nodal_.resize(3 * static_cast<std::size_t>(mesh_.nodes));
+  kernel_.deposit(at_particles_, nodal_, 3);
+  for (std::size_t k = 0; k < nodal_.size(); ++k) nodal_[k] /= mass_[k / 3] * depth_;
+  filter_->apply(nodal_.data(), 3);
+  fluid_.meet_continuity(nodal_);
+}
+
+void Coupling::take_void_fraction() {
   prepare_filter();
   place_particles();
   const int count = particles_.owned();
@@ -144,7 +158,7 @@ void Coupling::restored(double largest_diameter, double last_step) {
 void Coupling::before_particles(double dt) {
   place_particles();
   const int count = particles_.owned();
-  const auto velocity = fluid_.velocity();
+  const auto velocity = fluid_.carrying_velocity();
   nodal_.assign(velocity.begin(), velocity.end());
   filter_->apply(nodal_.data(), 3);
   at_particles_.resize(4 * static_cast<std::size_t>(count));
@@ -225,6 +239,8 @@ void Coupling::before_fluid(double dt) {
       ledger_.drag_on_particles[d] += action.impulse[d];
       ledger_.forces_on_particles[d] += dt * action.reaction[d];
     }
+    // A free particle takes on the share 1 - exp(-k dt/m) of a change of the flow, and its volume with it.
+    q[5] = volume * (1 - h) * responses_[p].free / mass;
     ledger_.particle_volume += volume;
     exchanged_ += vec3(&q[2]).norm();
   }
@@ -239,6 +255,7 @@ void Coupling::before_fluid(double dt) {
     }
     exchanged_ += vec3(&q[2]).norm();
   }
+  if (modulation_) modulation_->before_fluid(depth_, *filter_, kernel_, particles_, fluid_);
   if (heat_) heat_->before_fluid(dt, depth_, *filter_, kernel_);
   if (work_) work_->before_fluid(dt, depth_, *filter_, kernel_);
   kernel_.deposit(at_particles_, nodal_, load_components);
@@ -255,9 +272,24 @@ void Coupling::before_fluid(double dt) {
     solids_[i] = f[0];
     load.response[i] = mass_[i] * f[1] / dt;
     for (int d = 0; d < 3; ++d) load.force[3 * i + d] = -mass_[i] * f[2 + d] / dt;
+    load.following[i] = f[5];
   }
   void_fraction_.advance(solids_, dt, options_.void_fraction_minimum, load.void_fraction, load.void_fraction_rate);
   for (int i = 0; i < mesh_.owned_nodes; ++i) ledger_.drag_on_fluid += depth_ * dt * vec3(&load.force[3 * i]);
+  if (fluid_.total_energy() && !warned_) watch_following();
+}
+
+void Coupling::watch_following() {
+  const ParticleLoad& load = fluid_.load();
+  double most = 0;
+  for (int i = 0; i < mesh_.owned_nodes; ++i) most = std::max(most, load.following[i] / load.void_fraction[i]);
+  most = mpi_max(most);
+  if (!(most > 1)) return;
+  warned_ = true;
+  warning_ = fmt::format(
+      "warning: free powder so dense and fine that it follows the gas within a step, (1 - alpha)(1 - exp(-k dt/m)) = "
+      "{:.3g} alpha somewhere: a compressible gas may oscillate above 1; take a shorter -time_step",
+      most);
 }
 
 void Coupling::after_fluid(double dt) {
@@ -323,6 +355,8 @@ void Coupling::after_fluid(double dt) {
       std::max({(ledger_.drag_on_particles + ledger_.forces_on_particles + ledger_.drag_on_fluid).norm(),
                 (ledger_.response_on_particles + ledger_.response_on_fluid).norm(),
                 (ledger_.pressure_on_particles + ledger_.pressure_on_fluid).norm()});
+  if (!std::isfinite(exchanged_))  // std::max would lose it
+    throw RunError("what fluid and particles exchanged is not a number: one of them has become non-finite");
   const char* what = "the exchange between fluid and particles";
   ledger_.residual =
       std::max(balanced(what, imbalance, exchanged_),
@@ -336,7 +370,8 @@ std::string Coupling::description() const {
                                             : std::string("two diameters of the largest particle, at least two cells");
   return fmt::format("drag {}{}{}{}{}, model {}, filter {} in {} passes", law, forces_->description(),
                      thermophoresis_ ? ", thermophoresis " + thermophoresis_->name() : "",
-                     dispersion_ ? ", dispersion " + dispersion_->name() : "",
+                     (dispersion_ ? ", dispersion " + dispersion_->name() : "") +
+                         (modulation_ ? ", turbulence " + modulation_->name() : ""),
                      heat_ ? ", heat by " + heat_->name() : "", fluid_.model_a() ? "A" : "B", width, filter_->passes());
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/locator.hpp"
@@ -17,6 +18,7 @@
 #include "coupling/heat/heat_exchange.hpp"
 #include "coupling/kernel.hpp"
 #include "coupling/thermophoresis.hpp"
+#include "coupling/turbulence_modulation.hpp"
 #include "coupling/void_fraction.hpp"
 #include "coupling/work_exchange.hpp"
 #include "fluid/fluid.hpp"
@@ -71,8 +73,8 @@ class Coupling {
   Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options& options, const Vec3& gravity);
   ~Coupling();
 
-  /// Takes alpha from where the particles are now, as the start of the first step (or after a restart, or after
-  /// particles were added outside a step). Collective.
+  /// Takes alpha from where the particles are now, as the start of the first step, and makes the flow's initial
+  /// velocity meet continuity among them. Collective.
   void start();
 
   /// Samples u^n at the particles and sets their FluidAction. Collective.
@@ -102,10 +104,18 @@ class Coupling {
   ExchangeAccounts accounts() const { return {&ledger(), heat_ledger(), work_ledger()}; }
   /// One line for the header of the run: filter, drag law.
   std::string description() const;
+  /// Words for the terminal, once, when the step was in a regime that this fluid does not handle; else empty.
+  std::string take_warning() { return std::exchange(warning_, ""); }
+  /// Null when particles do nothing to the turbulence.
+  const TurbulenceModulation* modulation() const { return modulation_.get(); }
   const Filter& filter() const { return *filter_; }
   const std::vector<double>& mass() const { return mass_; }
 
  private:
+  /// A gas does not count on particles that follow it (docs/theory/coupling.md, C13).
+  void watch_following();
+  /// alpha from where the particles are now.
+  void take_void_fraction();
   void place_particles();
   /// The point of the cell nearest to x in reference coordinates, for a particle that has left it.
   void place_clamped(int p, int cell, const Vec3& x);
@@ -126,16 +136,19 @@ class Coupling {
   std::unique_ptr<Filter> filter_;
   FluidProperties properties_;
   std::unique_ptr<FluidForces> forces_;
-  std::unique_ptr<Thermophoresis> thermophoresis_;  ///< null: none
-  std::unique_ptr<Dispersion> dispersion_;          ///< null: none
-  std::unique_ptr<HeatExchange> heat_;              ///< null: fluid or particles have no temperature
-  std::unique_ptr<WorkExchange> work_;              ///< null: the fluid does not solve for its total energy
-  double last_step_ = 0;                            ///< s, the step that led to the present flow; 0: none
+  std::unique_ptr<Thermophoresis> thermophoresis_;    ///< null: none
+  std::unique_ptr<Dispersion> dispersion_;            ///< null: none
+  std::unique_ptr<TurbulenceModulation> modulation_;  ///< null: none
+  std::unique_ptr<HeatExchange> heat_;                ///< null: fluid or particles have no temperature
+  std::unique_ptr<WorkExchange> work_;                ///< null: the fluid does not solve for its total energy
+  double last_step_ = 0;                              ///< s, the step that led to the present flow; 0: none
   ExchangeLedger ledger_;
   double exchanged_ = 0;  ///< N s, sum of the magnitudes exchanged in this step: the scale of the residual
   std::vector<double> nodal_, at_particles_;
   std::vector<double> solids_;  ///< [nodes] 1 - alpha of this step
   std::vector<Response> responses_;
+  std::string warning_;
+  bool warned_ = false;
 };
 
 }  // namespace silt

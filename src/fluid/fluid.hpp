@@ -16,19 +16,28 @@ struct ParticleLoad {
   std::vector<double> void_fraction;       ///< [nodes] alpha at the end of the step
   std::vector<double> void_fraction_rate;  ///< [nodes] 1/s, (alpha^{n+1} - alpha^n)/dt
   std::vector<double> force;  ///< [nodes][3] N, load vector: what the particles push the fluid with (-sum_p w_i I_p/dt)
-  std::vector<double> response;       ///< [nodes] kg/s: sum_p w_i K_p; the fluid feels -response (u^{n+1} - u^n)
+  std::vector<double> response;  ///< [nodes] kg/s: sum_p w_i K_p; the fluid feels -response (u^{n+1} - u^n)
+  /// [nodes] s, share of the volume taken by particles that follow a change of the flow within the step,
+  /// sum_p w_i V_p (dv_p/du)/M_i. Continuity counts on it, div(alpha u + s (u - u^n)) = -d(alpha)/dt; and in model A
+  /// the fluid feels -s grad p beside -alpha grad p, and s grad p of the step before in return
+  /// (docs/theory/coupling.md).
+  std::vector<double> following;
   std::vector<double> heat;           ///< [nodes] W, load vector: heat that the particles give the fluid
   std::vector<double> heat_response;  ///< [nodes] W/K: the fluid gets heat - heat_response (T^{n+1} - T^n)
-  std::vector<double> energy;  ///< [nodes] W, load vector: minus the work on the particles; for a fluid that solves
-                               ///< for its total energy
+  std::vector<double> energy;      ///< [nodes] W, load vector: minus the work on the particles; for a fluid that solves
+                                   ///< for its total energy
+  std::vector<double> turbulence;  ///< [nodes] W, load vector: what the particles add to k (negative: take from it)
+  double dissipation_factor = 0;   ///< C of what they add to epsilon, C epsilon/k times that
   explicit ParticleLoad(int nodes = 0)
       : void_fraction(nodes, 1.0),
         void_fraction_rate(nodes, 0.0),
         force(3 * nodes, 0.0),
         response(nodes, 0.0),
+        following(nodes, 0.0),
         heat(nodes, 0.0),
         heat_response(nodes, 0.0),
-        energy(nodes, 0.0) {}
+        energy(nodes, 0.0),
+        turbulence(nodes, 0.0) {}
 };
 
 /// What one fluid step took and left, for the progress line, the diagnostics and the ledger.
@@ -39,6 +48,8 @@ struct FluidStep {
   double courant = 0;            ///< largest |u| dt / h
   double mass_residual = 0;      ///< inflow - outflow - d/dt int alpha, relative to VolumeScale
   Vec3 momentum = Vec3::Zero();  ///< kg m/s, int alpha rho u at the end of the step
+  Vec3 lent = Vec3::Zero();      ///< N s, dt int s grad p: what particles that follow the flow get of its pressure and
+                                 ///< the fluid has felt for them; the next step gives it back
   Vec3 boundary_force =
       Vec3::Zero();  ///< N, pressure, viscous and convective momentum flux through the boundary (into the fluid)
   double drive_gradient = 0;  ///< Pa/m, fall of the mean pressure that drives a periodic flow
@@ -102,6 +113,11 @@ class Fluid {
   /// Number of unknowns over all ranks.
   long long unknowns() const { return unknowns_; }
 
+  /// Makes the initial velocity meet continuity among the particles, before the first step: div(alpha u + j) = 0 with
+  /// the flow of the boundaries, alpha of the load and j [nodes][3] m/s the particles' volume flux
+  /// (initial_projection.hpp). A gas that can be compressed, and a prescribed flow, stay as they are. Collective.
+  virtual void meet_continuity(std::span<const double> solids_flux) { (void)solids_flux; }
+
   /// Advances from time to time + dt with the present load. On SolveFailure the state is as before. Collective.
   virtual FluidStep advance(double time, double dt) = 0;
   /// Largest |u| dt/h of the present state for a unit step (1/s). Collective.
@@ -115,7 +131,10 @@ class Fluid {
 
   /// [nodes][3] m/s, interstitial velocity; consistent on shared nodes.
   virtual std::span<const double> velocity() const = 0;
-  /// [nodes][3] m/s, the change of the velocity that entered the particles' response in the last step.
+  /// [nodes][3] m/s, the velocity by which the fluid drags particles; velocity() but for what the scheme's last
+  /// correction adds.
+  virtual std::span<const double> carrying_velocity() const { return velocity(); }
+  /// [nodes][3] m/s, the change of carrying_velocity() in the last step, as it entered the particles' response.
   virtual std::span<const double> velocity_change() const = 0;
   /// [nodes] Pa.
   virtual std::span<const double> pressure() const = 0;
@@ -162,8 +181,23 @@ class Fluid {
   virtual std::vector<StateArray> state() = 0;
   /// To be called after the arrays of state() were overwritten. Collective.
   virtual void restored() {}
+  /// The values of state(), to go back to when something after the fluid's step fails. Unlike state() it leaves the
+  /// solvers as they are.
+  std::vector<std::vector<double>> kept() {
+    std::vector<std::vector<double>> values;
+    for (const StateArray& array : arrays()) values.push_back(*array.values);
+    return values;
+  }
+  /// Collective.
+  void go_back(const std::vector<std::vector<double>>& values) {
+    const std::vector<StateArray> to = state();
+    for (std::size_t k = 0; k < to.size(); ++k) *to[k].values = values[k];
+    restored();
+  }
 
  protected:
+  /// state() without what a checkpoint asks of the solvers.
+  virtual std::vector<StateArray> arrays() { return state(); }
   /// `-fluid_void_fraction` of a solved fluid (a fixed porous matrix without drag): alpha at `time` and its rate become
   /// the load. Collective.
   void set_void_fraction(const Mesh& mesh, double time);

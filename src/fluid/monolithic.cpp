@@ -84,6 +84,7 @@ Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& f
   for (int i = 0; i < mesh.nodes; ++i)
     pressure_[i] = initial_pressure(vec3(&mesh.node_coordinates[3 * static_cast<size_t>(i)]), 0);
   step_previous_.assign(mesh.nodes, 0.0);
+  lent_share_.assign(mesh.nodes, 0.0);
   driven_ = drive_ != nullptr;
   if (drive_) last_drive_.assign(mesh.nodes, 0.0);
   change_.assign(3 * static_cast<size_t>(mesh.nodes), 0.0);
@@ -112,6 +113,7 @@ void Monolithic::prepare_step(double time, double dt) {
   space.interpolate(load_.void_fraction.data(), f.alpha.data(), 1);
   for (double& alpha : f.alpha) alpha = std::max(alpha, least_alpha);
   f.alpha_rate = load_.void_fraction_rate;
+  f.following = load_.following;
   f.nodal_load = load_.force;
   f.nodal_response = load_.response;
   f.load.resize(3 * p);
@@ -128,6 +130,9 @@ void Monolithic::prepare_step(double time, double dt) {
 
   const double last = mpi_max(mesh_.nodes ? step_previous_[0] : 0.0);
   bdf_ = dt <= 0 ? Bdf{0, 0, 0, 1, 0} : order_ == 2 && last > 0 ? Bdf::second(dt, last) : Bdf::first(dt);
+  f.lent_share = lent_share_;  // the impulse that was lent comes back over this step
+  for (double& share : f.lent_share) share *= dt > 0 && model_a_ ? last / dt : 0.0;
+  f.lent_pressure = pressure_;
   if (energy_ && energy_->buoyant()) {
     std::vector<double> force(3 * p, 0.0), all(3 * v);
     energy_->add_buoyancy(bdf_, load_.void_fraction, model_a_, force);
@@ -222,6 +227,7 @@ FluidStep Monolithic::advance(double time, double dt) {
   }
   velocity_previous_ = before;
   std::fill(step_previous_.begin(), step_previous_.end(), dt);
+  lent_share_ = load_.following;
   if (boundary_.closed()) remove_mean_pressure();
   if (drive_) std::fill(last_drive_.begin(), last_drive_.end(), drive_gradient_);
   find_change(before);

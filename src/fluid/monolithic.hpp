@@ -36,6 +36,7 @@ class Monolithic final : public Fluid {
   /// Reads `-fluid_element` and the stabilisation factors; `boundary` conditions from `-boundary_...`. Collective.
   Monolithic(const Mesh& mesh, Options& options, const FluidOptions& fluid, const Vec3& gravity);
 
+  void meet_continuity(std::span<const double> solids_flux) override;
   FluidStep advance(double time, double dt) override;
   double courant_rate() const override;
   std::span<const double> velocity() const override { return {velocity_.data(), 3 * static_cast<size_t>(mesh_.nodes)}; }
@@ -79,6 +80,8 @@ class Monolithic final : public Fluid {
   NewtonSolver::Result find_drive(double target, const std::function<void(double)>& set);
   /// m3/s m, int alpha u over the domain, of velocity_. Collective.
   Vec3 total_flux() const;
+  /// N, int s grad p of the last step. Collective.
+  Vec3 lent_force() const;
   void find_change(const std::vector<double>& before);
   void find_pressure_gradient();
   void remove_mean_pressure();
@@ -104,6 +107,7 @@ class Monolithic final : public Fluid {
   std::vector<double> pressure_, change_, pressure_gradient_;
   std::vector<double>
       step_previous_;  ///< [nodes] s, dt of the last step, 0 before the first (an array for the checkpoint)
+  std::vector<double> lent_share_;  ///< [nodes] s of the last step, whose s grad p comes back in this one
   std::vector<double> vertices_, vertices_previous_;  ///< [nodes][3], velocities as the checkpoint sees them
   std::vector<double> middles_, middles_previous_;    ///< [cells][middles][3]
   Vec3 static_head_ = Vec3::Zero();                   ///< Pa/m, gradient that the pressure holds at rest

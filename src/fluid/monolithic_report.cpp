@@ -72,6 +72,7 @@ FluidStep Monolithic::report(double dt) {
   step.mass_residual =
       -(sum + stored) / volume_scale_.next(inflow, stored, mpi_sum(speed), mesh_.volume, mesh_.dimension, dt);
   step.momentum = density_ * total_flux();
+  if (model_a_) step.lent = dt * lent_force();
   if (drive_) {  // what the mean pressure does to both phases; the particles' share is in their exchange
     step.drive_gradient = drive_gradient_;
     step.drive_velocity = step.momentum[drive_->direction()] / (density_ * mesh_.volume);
@@ -103,6 +104,31 @@ Vec3 Monolithic::total_flux() const {
   }
   for (int i = 0; i < 3; ++i) flux[i] = mpi_sum(flux[i]);
   return flux;
+}
+
+Vec3 Monolithic::lent_force() const {
+  // As the weak form has it: s and grad p at the quadrature points.
+  const FlowTable& table = flow_table(mesh_.cell, system_.space().order);
+  const size_t np = mesh_.nodes_per_cell;
+  Vec3 force = Vec3::Zero();
+  for (int c = 0; c < mesh_.cells; ++c) {
+    const double* x = &mesh_.cell_coordinates[3 * static_cast<size_t>(c) * np];
+    const int* node = &mesh_.cell_nodes[np * static_cast<size_t>(c)];
+    for (int q = 0; q < table.points; ++q) {
+      Mat3 J = Mat3::Zero();
+      Vec3 reference = Vec3::Zero();
+      double share = 0;
+      for (size_t a = 0; a < np; ++a) {
+        J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
+        reference += pressure_[node[a]] * vec3(table.dM[q][a]);
+        share += lent_share_[node[a]] * table.M[q][a];
+      }
+      if (mesh_.dimension == 2) J(2, 2) = 1;
+      force += table.weight[q] * J.determinant() * share * (J.inverse().transpose() * reference);
+    }
+  }
+  for (int i = 0; i < 3; ++i) force[i] = mpi_sum(force[i]);
+  return force;
 }
 
 }  // namespace silt

@@ -1,6 +1,7 @@
 // What the monolithic scheme keeps between steps, and what it tells of it.
 #include <algorithm>
 
+#include "fluid/initial_projection.hpp"
 #include "fluid/monolithic.hpp"
 
 namespace silt {
@@ -13,7 +14,8 @@ std::vector<Fluid::StateArray> Monolithic::state() {
                                     {"velocity", &vertices_, 3},
                                     {"velocity_previous", &vertices_previous_, 3},
                                     {"velocity_change", &change_, 3},
-                                    {"fluid_step_previous", &step_previous_, 1}};
+                                    {"fluid_step_previous", &step_previous_, 1},
+                                    {"lent_share", &lent_share_, 1}};
   const size_t vertices = 3 * static_cast<size_t>(mesh_.nodes);
   vertices_.assign(velocity_.begin(), velocity_.begin() + static_cast<long>(vertices));
   vertices_previous_.assign(velocity_previous_.begin(), velocity_previous_.begin() + static_cast<long>(vertices));
@@ -56,6 +58,24 @@ void Monolithic::restored() {
   find_pressure_gradient();
 }
 
+void Monolithic::meet_continuity(std::span<const double> solids_flux) {
+  boundary_.evaluate(0, load_.void_fraction.data());
+  const LagrangeSpace& space = system_.space();
+  const size_t vertices = 3 * static_cast<size_t>(mesh_.nodes);
+  std::vector<double> before(velocity_.begin(), velocity_.begin() + static_cast<long>(vertices)), after = before;
+  boundary_.impose(after.data());
+  project_onto_continuity(mesh_, boundary_, load_.void_fraction, solids_flux, after);
+  for (size_t i = 0; i < vertices; ++i) after[i] -= before[i];
+  // The middles of quadratic elements change as the vertices around them do.
+  std::vector<double> change(velocity_.size());
+  space.interpolate(after.data(), change.data(), 3);
+  for (size_t i = 0; i < velocity_.size(); ++i) velocity_[i] += change[i];
+  prepare_step(0, 0);
+  system_.constraints().impose(fields_.prescribed_velocity.data(), velocity_.data());
+  velocity_previous_ = velocity_;
+  system_.to_vector(velocity_.data(), pressure_.data(), unknown_);
+}
+
 std::vector<Fluid::Scalar> Monolithic::scalars() const {
   std::vector<Scalar> result = Fluid::scalars();
   if (turbulence_) turbulence_->add_scalars(result);
@@ -63,7 +83,8 @@ std::vector<Fluid::Scalar> Monolithic::scalars() const {
 }
 
 Turbulence::Flow Monolithic::turbulent_flow() const {
-  return {velocity(), density_field_, viscosity_field_, load_.void_fraction};
+  return {velocity(),          density_field_,   viscosity_field_,
+          load_.void_fraction, load_.turbulence, load_.dissipation_factor};
 }
 
 }  // namespace silt

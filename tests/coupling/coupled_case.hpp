@@ -16,6 +16,7 @@ struct CoupledCase {
   std::unique_ptr<Particles> particles;
   std::unique_ptr<Coupling> coupling;
   double time = 0;
+  FluidStep flow;  ///< of the last step
 
   CoupledCase& set(const std::string& name, const std::string& value) {
     options.set(name, value);
@@ -34,7 +35,7 @@ struct CoupledCase {
     coupling->before_particles(dt);
     particles->advance(time, dt);
     coupling->before_fluid(dt);
-    fluid->advance(time, dt);
+    flow = fluid->advance(time, dt);
     coupling->after_fluid(dt);
     time += dt;
   }

@@ -79,7 +79,7 @@ inline void set_bed(FlowCase& flow, const std::function<double(const Vec3&)>& vo
                     const std::function<double(const Vec3&)>& drag) {
   const Mesh& mesh = *flow.mesh;
   auto& load = flow.fluid->load();
-  const auto u = flow.fluid->velocity();
+  const auto u = flow.fluid->carrying_velocity();
   std::vector<double> sums(4 * static_cast<std::size_t>(mesh.nodes), 0.0), beta(mesh.nodes);
   for (int i = 0; i < mesh.nodes; ++i) {
     load.void_fraction[i] = void_fraction(flow.position(i));

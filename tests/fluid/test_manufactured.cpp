@@ -139,7 +139,7 @@ Errors porous(const std::string& cell, int n, bool model_a) {
       load.void_fraction_rate[i] = exact.rate(x, t);
       load.response[i] = mass[i] * exact.beta(x, t);
       vec3(&load.force[3 * i]) =
-          mass[i] * exact.source(x, t) - load.response[i] * vec3(flow.fluid->velocity().data() + 3 * i);
+          mass[i] * exact.source(x, t) - load.response[i] * vec3(flow.fluid->carrying_velocity().data() + 3 * i);
     }
     flow.advance(dt);
   }

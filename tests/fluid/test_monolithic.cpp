@@ -17,6 +17,12 @@ void fill_random(MonolithicCase& flow, std::mt19937& random) {
   for (double& r : load.void_fraction_rate) r = 0.1 * number(random);
   for (double& f : load.force) f = number(random);
   for (double& r : load.response) r = 1 + number(random);
+  for (double& s : load.following) s = 0.2 + 0.1 * number(random);
+  for (auto& array : flow.fluid->state()) {  // what the step before lent comes back
+    if (array.name == "lent_share")
+      for (double& s : *array.values) s = 0.2 + 0.1 * number(random);
+    if (array.name == "fluid_step_previous") std::fill(array.values->begin(), array.values->end(), 0.07);
+  }
 }
 
 }  // namespace

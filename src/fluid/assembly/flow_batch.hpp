@@ -82,7 +82,7 @@ template <class E, class V>
 struct FlowBatch {
   static constexpr int dim = E::dim, NP = E::NP, NV = E::NV, W = sizeof(V) / sizeof(double);
   V x[NP][dim], u[NV][dim], p[NP], alpha[NV], history[NV][dim], old[NV][dim], body[NV][dim];
-  V rate[NP], load[NP][dim], response[NP], viscosity, h;
+  V rate[NP], load[NP][dim], response[NP], following[NP], lent_share[NP], lent_pressure[NP], viscosity, h;
   const bool forced, loaded;
 
   /// Cells first to first + count - 1; further lanes repeat the last.
@@ -115,6 +115,9 @@ struct FlowBatch {
       rate[a] = gathered<V>(record, 1);
       if (!loaded) continue;
       response[a] = gathered<V>(record, 2);
+      following[a] = gathered<V>(record, 3);
+      lent_share[a] = gathered<V>(record, 8);
+      lent_pressure[a] = gathered<V>(record, 9);
       for (int i = 0; i < dim; ++i) load[a][i] = gathered<V>(record, 4 + i);
     }
   }
@@ -204,11 +207,12 @@ void interpolate_gradients(const FlowBatch<E, V>& b, const FlowPoint<E, V>& at, 
 
 /// Values of state and coefficients at a point.
 template <class E, class V>
-void interpolate_values(const FlowBatch<E, V>& b, const FlowTable& t, int q, FlowState<V, E::dim>& s,
-                        FlowCoefficients<V, E::dim>& k) {
+void interpolate_values(const FlowBatch<E, V>& b, const FlowPoint<E, V>& at, const FlowTable& t, int q,
+                        FlowState<V, E::dim>& s, FlowCoefficients<V, E::dim>& k) {
   constexpr int dim = E::dim;
-  s.pressure = k.alpha = k.alpha_rate = k.response = V{};
-  for (int i = 0; i < dim; ++i) s.velocity[i] = k.history[i] = k.velocity_old[i] = k.body[i] = k.load[i] = V{};
+  s.pressure = k.alpha = k.alpha_rate = k.response = k.following = V{};
+  for (int i = 0; i < dim; ++i)
+    s.velocity[i] = k.history[i] = k.velocity_old[i] = k.body[i] = k.load[i] = k.returned[i] = V{};
   for (int a = 0; a < E::NV; ++a) {
     const double N = t.N[q][a];
     k.alpha += b.alpha[a] * N;
@@ -221,14 +225,22 @@ void interpolate_values(const FlowBatch<E, V>& b, const FlowTable& t, int q, Flo
     if (b.loaded)
       for (int i = 0; i < dim; ++i) k.velocity_old[i] += b.old[a][i] * N;
   }
+  V lent{};
   for (int a = 0; a < E::NP; ++a) {
     const double M = t.M[q][a];
     s.pressure += b.p[a] * M;
     k.alpha_rate += b.rate[a] * M;
     if (!b.loaded) continue;
     k.response += b.response[a] * M;
-    for (int i = 0; i < dim; ++i) k.load[i] += b.load[a][i] * M;
+    k.following += b.following[a] * M;
+    lent += b.lent_share[a] * M;
+    for (int i = 0; i < dim; ++i) {
+      k.load[i] += b.load[a][i] * M;
+      k.returned[i] += b.lent_pressure[a] * at.gM[a][i];
+    }
   }
+  if (b.loaded)
+    for (int i = 0; i < dim; ++i) k.returned[i] *= lent;
 }
 
 /// visit(q, point, state, coefficients) at the points of a batch, in order.
@@ -243,7 +255,7 @@ void at_points(const FlowData& data, const FlowBatch<E, V>& b, const Visit& visi
   for (int q = 0; q < t.points; ++q) {
     at.move(t, q, b.x);
     if (!E::linear || q == 0) interpolate_gradients<E, V>(b, at, s, k);
-    interpolate_values<E, V>(b, t, q, s, k);
+    interpolate_values<E, V>(b, at, t, q, s, k);
     visit(q, at, s, k);
   }
 }

@@ -31,7 +31,7 @@ struct FlowData {
   bool forced = false;                    ///< there is a body force
   bool loaded = false;                    ///< there is a load or a response of particles
   FlowParameters parameters;
-  static constexpr int node_stride = 16, vertex_stride = 8;
+  static constexpr int node_stride = 16, vertex_stride = 12;
 };
 
 /// Residuals and Jacobians of `lanes` cells at a time, for the widest vectors of this machine.

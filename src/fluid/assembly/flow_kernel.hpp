@@ -44,10 +44,15 @@ void add_jacobian(const FlowBatch<E, V>& b, const V (&w)[E::NV], const FlowPoint
   const Point point(s, k, parameters);
   typename Point::Column column[E::NV];
   for (int n = 0; n < E::NV; ++n) column[n] = point.column(V{} + t.N[q][n], at.gN(n), b.alpha[n]);
-  V pressure_share[E::NP][dim], pressure_value[E::NP];  // of the pressure functions as unknowns
+  // Of the pressure functions as unknowns: their value, what the strong residual has of them, and the share of it that
+  // is tested as it stands (not by parts).
+  V pressure_share[E::NP][dim], pressure_lent[E::NP][dim], pressure_value[E::NP];
   for (int n = 0; n < E::NP; ++n) {
     pressure_value[n] = at.volume * t.M[q][n];
-    for (int i = 0; i < dim; ++i) pressure_share[n][i] = point.share * at.gM[n][i];
+    for (int i = 0; i < dim; ++i) {
+      pressure_lent[n][i] = point.lent * at.gM[n][i];
+      pressure_share[n][i] = point.share * at.gM[n][i] + pressure_lent[n][i];
+    }
   }
   V gradient[dim];
   for (int a = 0; a < E::NV; ++a) {
@@ -57,8 +62,8 @@ void add_jacobian(const FlowBatch<E, V>& b, const V (&w)[E::NV], const FlowPoint
     for (int n = 0; n < E::NV; ++n) point.add(test, column[n], row + E::velocity_row(n, 0), rows);
     for (int n = 0; n < E::NP; ++n)
       for (int i = 0; i < dim; ++i)
-        row[i * rows + E::pressure_row(n)] +=
-            test.stream * pressure_share[n][i] - w[a] * at.gN(a)[i] * pressure_value[n];
+        row[i * rows + E::pressure_row(n)] += test.stream * pressure_share[n][i] + test.shape * pressure_lent[n][i] -
+                                              w[a] * at.gN(a)[i] * pressure_value[n];
   }
   for (int a = 0; a < E::NP; ++a) {
     for (int i = 0; i < dim; ++i) gradient[i] = at.volume * at.gM[a][i];

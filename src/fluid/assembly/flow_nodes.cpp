@@ -17,7 +17,9 @@ void FlowNodes::pack(const StepFields& fields, const double* state, const FlowLa
   constexpr int stride = FlowData::node_stride, vertex_stride = FlowData::vertex_stride;
   const size_t nodes = fields.alpha.size(), vertices = fields.alpha_rate.size();
   forced_ = any_of_node(fields.body);
-  loaded_ = any_of_node(fields.response) || any_of_node(fields.load);
+  const bool lent = !fields.lent_share.empty();
+  loaded_ = any_of_node(fields.response) || any_of_node(fields.load) || any_of_node(fields.following) ||
+            any_of_node(fields.lent_share);
   nodes_.resize(nodes * stride);
   vertices_.resize(vertices * vertex_stride);
   for (size_t i = 0; i < nodes; ++i) {
@@ -37,6 +39,9 @@ void FlowNodes::pack(const StepFields& fields, const double* state, const FlowLa
     to[1] = fields.alpha_rate[i];
     if (!loaded_) continue;
     to[2] = fields.response[i];
+    to[3] = fields.following.empty() ? 0 : fields.following[i];
+    to[8] = lent ? fields.lent_share[i] : 0;
+    to[9] = lent ? fields.lent_pressure[i] : 0;
     for (int c = 0; c < 3; ++c) to[4 + c] = fields.load[3 * i + c];
   }
 }

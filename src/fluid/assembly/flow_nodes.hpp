@@ -10,7 +10,8 @@ struct StepFields;
 /// The nodal values of a step and an iterate, packed for the cell loops.
 ///
 /// A velocity node has u (3), alpha, history (3), 0, body force (3), 0, u^n (3), 0; a vertex has p, d(alpha)/dt,
-/// response, 0, load (3), 0. What no node has (a body force, particles) is not packed, and the loops leave it out.
+/// response, following, load (3), 0, lent share, lent pressure, 0, 0. What no node has (a body force, particles) is not
+/// packed, and the loops leave it out.
 class FlowNodes {
  public:
   /// `state` by `layout`, Cartesian.

@@ -21,6 +21,8 @@ struct StepFields {
   std::vector<double> alpha_rate;                  ///< [p] 1/s
   std::vector<double> load, response;              ///< [p][3] N/m3, [p] kg/(m3 s): the particles' densities
   std::vector<double> nodal_load, nodal_response;  ///< [p][3] N, [p] kg/s: added to the rows of equal-order elements
+  std::vector<double> following;                   ///< [p] s; empty: 0
+  std::vector<double> lent_share, lent_pressure;   ///< [p] s and p of the last step; empty: 0
   std::vector<double> prescribed_velocity;         ///< [v][3] m/s
   std::vector<double> prescribed_flow;             ///< [p] m3/s
   std::vector<double> boundary_pressure;           ///< [p] Pa

@@ -44,6 +44,9 @@ GasNewton::GasNewton(const GasSystem& system) : system_(system), matrix_(system.
   default_option("-fluid_sub_pc_type", "ilu");
   default_option("-fluid_sub_pc_factor_levels", "1");
   SILT_PETSC(SNESSetFromOptions(snes_));
+  PetscReal asked;
+  SILT_PETSC(SNESGetTolerances(snes_, &asked, nullptr, nullptr, nullptr, nullptr));
+  if (asked > 1e-50) least_residual_ = asked;
 }
 
 PetscErrorCode GasNewton::residual(SNES, Vec x, Vec r, void* self) {
@@ -122,7 +125,8 @@ PetscErrorCode GasNewton::search(SNESLineSearch line, void* self) {
 GasNewton::Result GasNewton::solve(const GasStep& step, Vec x, double scale, double accepted) {
   step_ = &step;
   norms_.clear();
-  SILT_PETSC(SNESSetTolerances(snes_, 1e-11 * scale, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+  SILT_PETSC(
+      SNESSetTolerances(snes_, least_residual_ * scale, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   Result result;
   SNESConvergedReason reason = SNES_DIVERGED_LINEAR_SOLVE;
   try {

@@ -38,6 +38,8 @@ class GasNewton {
   MatHandle matrix_;
   VecHandle residual_;
   SnesHandle snes_;
+  /// Norm at which a residual counts as nothing but rounding, over that of the terms; `-fluid_snes_atol`.
+  double least_residual_ = 1e-11;
   std::vector<double> norms_;
 };
 

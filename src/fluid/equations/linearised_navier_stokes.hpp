@@ -13,7 +13,7 @@ namespace silt {
 ///   alpha/alpha.
 template <int dim, class V>
 struct LinearisedNavierStokes {
-  V mass, shear, share, tau_momentum, tau_pressure, divergence_factor, bulk_factor, pspg;
+  V mass, shear, share, following, lent, tau_momentum, tau_pressure, divergence_factor, bulk_factor, pspg;
   V strong[dim], galerkin_gradient[dim][dim], strong_gradient[dim][dim];  ///< [i][c]: m d_c u_i, M_ic
   V convection2_velocity[dim];                                            ///< (2 m/h)^2 u_c = half of d(1/tau^2)/du_c
   V dilation_slope[dim];  ///< 2/3 mu d_c alpha, plus what the grad-div factor has of u_c
@@ -25,6 +25,8 @@ struct LinearisedNavierStokes {
     mass = at.alpha * k.density;
     shear = at.alpha * at.viscosity;
     share = k.model_a ? at.alpha : at.alpha * 0.0 + 1.0;
+    following = at.following * k.continuity_scale;
+    lent = k.model_a ? at.following : at.following * 0.0;
     stabilised = k.supg != 0 || k.pspg != 0 || k.grad_div != 0;
     time = mass * k.time_coefficient;
     response = at.response;
@@ -140,7 +142,7 @@ struct LinearisedNavierStokes {
       a.stabilised[c] = pspg * gradient[c];
       V sum = gradient[0] * strong_gradient[0][c];
       for (int j = 1; j < dim; ++j) sum += gradient[j] * strong_gradient[j][c];
-      a.by_shape[c] = pspg * sum - shrink * convection2_velocity[c];
+      a.by_shape[c] = pspg * sum - shrink * convection2_velocity[c] - following * gradient[c];
     }
     return a;
   }

@@ -27,6 +27,8 @@ struct FlowCoefficients {
   T body[dim];          ///< N/m3, given force
   T load[dim];          ///< N/m3, density of the particles' force
   T response;           ///< kg/(m3 s), density of the particles' response
+  T following;          ///< s, volume share of particles that follow the flow within the step
+  T returned[dim];      ///< N/m3, s grad p of the step before
   T viscosity;          ///< Pa s, with that of the turbulence
   T h;                  ///< m, shortest edge of the cell
 };
@@ -55,9 +57,11 @@ struct FlowResidual {
 ///   alpha rho (du/dt + u.grad u) - div(alpha mu (grad u + grad u^T - 2/3 div u I)) + P (grad p - m) = f,   d(alpha)/dt
 ///   + div(alpha u) = 0; P = alpha in model A, 1 in model B, m = rho g (when p holds the static head) plus what drives
 ///   a periodic flow,
-/// with the residual-based variational multiscale terms SUPG, PSPG and grad-div. The term alpha grad p is tested in the
-/// form -int p div(alpha v)_h, the adjoint of the continuity equation: it does the work int p d(alpha)/dt exactly, and
-/// at a free boundary the pressure is a natural traction. Time scale tau after Tezduyar & Osawa (2000):
+/// with particles that follow the flow div(alpha u + s (u - u^n)) and, in model A, s grad p less that of the step
+/// before (docs/theory/coupling.md, C13, C14), with the residual-based variational multiscale terms SUPG, PSPG and
+/// grad-div. The term alpha grad p is tested in the form -int p div(alpha v)_h, the adjoint of the continuity equation:
+/// it does the work int p d(alpha)/dt exactly, and at a free boundary the pressure is a natural traction. Time scale
+/// tau after Tezduyar & Osawa (2000):
 ///   1/tau^2 = (2 alpha rho |u|/h)^2 + (12 alpha mu/h^2)^2 + (alpha rho c/dt + beta)^2;
 /// in SUPG only beta stands in the last bracket. tau is differentiated with the rest: the Jacobian is exact.
 template <int dim>
@@ -76,6 +80,7 @@ struct VolumeAveragedNavierStokes {
       // The mean pressure gradient is tested like the pressure's own (row (a, i) gets -int w_a N_a m_i in the cell
       // loop), so that a static head balances it exactly.
       galerkin[i] = acceleration * mass - at.body[i];
+      if (k.model_a) galerkin[i] += state.pressure_gradient[i] * at.following - at.returned[i];
       particles[i] = (state.velocity[i] - at.velocity_old[i]) * at.response - at.load[i];
       strong[i] = galerkin[i] + particles[i] +
                   (state.pressure_gradient[i] - T(T{} + k.mean_gradient[i])) * pressure_factor -
@@ -111,7 +116,8 @@ struct VolumeAveragedNavierStokes {
     out.pressure_stress = -state.pressure;
     const S divergence = state.flux_divergence + at.alpha_rate;
     out.continuity = divergence * (T{} + k.continuity_scale);
-    for (int j = 0; j < dim; ++j) out.flux[j] = S(T{});
+    for (int j = 0; j < dim; ++j)
+      out.flux[j] = (state.velocity[j] - at.velocity_old[j]) * T(at.following * -k.continuity_scale);
     if (k.supg == 0 && k.pspg == 0 && k.grad_div == 0) return;
 
     S speed_squared = state.velocity[0] * state.velocity[0];
@@ -125,7 +131,7 @@ struct VolumeAveragedNavierStokes {
     const S tau_momentum = one / square_root(S(steady + T(at.response * at.response)));
     const S tau_pressure = one / square_root(S(steady + T(inertia * inertia)));
     for (int j = 0; j < dim; ++j) {
-      out.flux[j] = tau_pressure * strong[j] * T(at.alpha * (k.pspg * k.continuity_scale));
+      out.flux[j] += tau_pressure * strong[j] * T(at.alpha * (k.pspg * k.continuity_scale));
       const S weight = tau_momentum * state.velocity[j] * T(mass * k.supg);
       for (int i = 0; i < dim; ++i) out.stress[i][j] += weight * strong[i];
     }

@@ -30,6 +30,7 @@ struct CoefficientTerms {
   const double* void_fraction;   ///< [nodes]; null: 1
   const double* drag;            ///< [nodes] kg/m3/s, beta; with void_fraction only
   const double* eddy_viscosity;  ///< [padded cells] Pa s, added to the viscosity; null: 0
+  const double* following;       ///< [nodes] s, volume share of particles that follow; with void_fraction only; null: 0
 };
 
 /// Coefficients constant in each cell, arrays of padded_cells.
@@ -37,10 +38,11 @@ struct CellCoefficients {
   double* void_fraction;   ///< alpha_e, mean of the nodes
   double* pressure_share;  ///< P_e: alpha_e in model A, 1 in model B
   double* drag;            ///< beta_e = alpha_e^2 mean(beta/alpha^2), kg/m3/s
-  double* mobility;        ///< k_e = P_e/alpha_e mean(alpha/(alpha rho gamma/dt + beta)): u = u~ - k grad phi
+  double* mobility;        ///< k_e = (P_e + s_e)/alpha_e mean(alpha/(alpha rho gamma/dt + beta)): u = u~ - k grad phi
   double* stabilisation;   ///< tau_p = alpha_e P_e tau, m3 s/kg
   double* force[3];        ///< f_e, mean force density of the particles; null entries: 0
   double* balance[3];      ///< s_e = -(f_e + weight)/P_e, what balances grad p at rest; null entries: 0
+  double* following;       ///< s_e, mean of the nodes (model B: 0)
 };
 
 /// Where the cell force densities come from.
@@ -65,6 +67,9 @@ struct MomentumTerms {
   const double* body_force;          ///< [nodes][3] N/m3; null: 0
   const double* cell_void_fraction;
   const double* cell_pressure_share;
+  const double* cell_following;  ///< s_e
+  const double* cell_lent;       ///< s_e of the last step, whose pressure lent_pressure comes back
+  const double* lent_pressure;   ///< [nodes] Pa
   const double* cell_drag;
   const double* increment_factor;      ///< alpha_e rho c1 k_e^n
   const double* old_increment_factor;  ///< alpha_e rho c2 k_e^{n-1}
@@ -92,7 +97,7 @@ struct CellLoopTable {
   void (*continuity)(const CellBatches&, const ContinuityTerms&, double*);
   void (*diffusion)(const CellBatches&, const double*, double*);
   void (*drive)(const CellBatches&, const MomentumTerms&, double*);
-  void (*effective_gradient)(const CellBatches&, const MomentumTerms&, double*);
+  void (*mean_gradient)(const CellBatches&, const double*, const double*, double*);
 };
 
 /// The tables of the units; kind: 0 triangle, 1 quadrilateral, 2 tetrahedron, 3 hexahedron (enum Cell).

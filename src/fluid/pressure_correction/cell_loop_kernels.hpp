@@ -19,7 +19,7 @@ void coefficients(const CellBatches& mesh, const CoefficientTerms& in, const Cel
   for (int batch = 0; batch < mesh.batches; ++batch) {
     const int* node = batch_nodes<kind>(mesh, batch);
     const long at = static_cast<long>(batch) * W;
-    Lanes w[nodes][D], speed2 = {}, alpha = constant(1), beta = {}, mobility = constant(1 / rho_rate);
+    Lanes w[nodes][D], speed2 = {}, alpha = constant(1), beta = {}, mobility = constant(1 / rho_rate), follows = {};
     gather(w, in.velocity, 3, node);
     for (int a = 0; a < nodes; ++a)
       for (int d = 0; d < D; ++d) speed2 += w[a][d] * w[a][d] * (1.0 / nodes);
@@ -38,6 +38,11 @@ void coefficients(const CellBatches& mesh, const CoefficientTerms& in, const Cel
       }
       beta = alpha * alpha * kappa;
       mobility /= alpha;
+      if (in.following && in.model_a) {
+        Lanes s[nodes][1];
+        gather(s, in.following, 1, node);
+        for (int a = 0; a < nodes; ++a) follows += s[a][0] * (1.0 / nodes);
+      }
     }
     const Lanes share = in.model_a ? alpha : constant(1);
     const Lanes inertia = alpha * rho_rate + beta, h = load(mesh.size + at);
@@ -46,7 +51,8 @@ void coefficients(const CellBatches& mesh, const CoefficientTerms& in, const Cel
     store(out.void_fraction + at, alpha);
     store(out.pressure_share + at, share);
     store(out.drag + at, beta);
-    store(out.mobility + at, share * mobility);
+    store(out.mobility + at, (share + follows) * mobility);
+    store(out.following + at, follows);
     store(out.stabilisation + at,
           alpha * share / square_root(convection * convection * speed2 + diffusion * diffusion + inertia * inertia));
   }
@@ -98,14 +104,16 @@ void momentum(const CellBatches& mesh, const MomentumTerms& in, double* values, 
     gather(history, in.history, 3, node);
     gather(p, in.pressure, 1, node);
     Lanes alphas[porous ? nodes : 1][1], rates[porous ? nodes : 1][1], phi[porous ? nodes : 1][1],
-        old_phi[porous ? nodes : 1][1];
-    Lanes share = constant(1), drag = {}, factor = {}, old_factor = {}, cell_force[D] = {};
+        old_phi[porous ? nodes : 1][1], returned[porous ? nodes : 1][1];
+    Lanes share = constant(1), drag = {}, factor = {}, old_factor = {}, lent = {}, cell_force[D] = {};
     if constexpr (porous) {
       gather(alphas, in.void_fraction, 1, node);
       gather(rates, in.void_fraction_rate, 1, node);
       gather(phi, in.increment, 1, node);
       gather(old_phi, in.old_increment, 1, node);
-      share = load(in.cell_pressure_share + at);
+      gather(returned, in.lent_pressure, 1, node);
+      share = load(in.cell_pressure_share + at) + load(in.cell_following + at);
+      lent = load(in.cell_lent + at);
       drag = load(in.cell_drag + at);
       factor = load(in.increment_factor + at);
       old_factor = load(in.old_increment_factor + at);
@@ -131,7 +139,7 @@ void momentum(const CellBatches& mesh, const MomentumTerms& in, double* values, 
       for (int a = 0; a < nodes; ++a) {
         Lanes effective;
         if constexpr (porous)
-          effective = share * p[a][0] + factor * phi[a][0] - old_factor * old_phi[a][0];
+          effective = share * p[a][0] - lent * returned[a][0] + factor * phi[a][0] - old_factor * old_phi[a][0];
         else
           effective = p[a][0];
         for (int d = 0; d < D; ++d) {
@@ -329,30 +337,22 @@ void diffusion(const CellBatches& mesh, const double* coefficient, double* value
 }
 
 template <int kind>
-void effective_gradient(const CellBatches& mesh, const MomentumTerms& in, double* sums) {
+void mean_gradient(const CellBatches& mesh, const double* field, const double* factor, double* sums) {
   constexpr int D = Shape<kind>::D, nodes = Shape<kind>::nodes;
   for (int batch = 0; batch < mesh.batches; ++batch) {
     const int* node = batch_nodes<kind>(mesh, batch);
-    const long at = static_cast<long>(batch) * W;
     Geometry<kind> geometry(mesh, batch);
     Lanes p[nodes][1], total[D] = {};
-    gather(p, in.pressure, 1, node);
-    if (in.void_fraction) {
-      const Lanes share = load(in.cell_pressure_share + at), factor = load(in.increment_factor + at) / share,
-                  old_factor = load(in.old_increment_factor + at) / share;
-      Lanes phi[nodes][1], old_phi[nodes][1];
-      gather(phi, in.increment, 1, node);
-      gather(old_phi, in.old_increment, 1, node);
-      for (int a = 0; a < nodes; ++a) p[a][0] += factor * phi[a][0] - old_factor * old_phi[a][0];
-    }
+    gather(p, field, 1, node);
     for (int q = 0; q < Shape<kind>::points; ++q) {
       geometry.at(*mesh.reference, q);
       for (int a = 0; a < nodes; ++a)
         for (int d = 0; d < D; ++d) total[d] += geometry.volume * geometry.gradient[a][d] * p[a][0];
     }
+    const Lanes share = (factor ? load(factor + static_cast<long>(batch) * W) : constant(1)) * (1.0 / nodes);
     Lanes r[nodes][D];
     for (int a = 0; a < nodes; ++a)
-      for (int d = 0; d < D; ++d) r[a][d] = total[d] * (1.0 / nodes);
+      for (int d = 0; d < D; ++d) r[a][d] = total[d] * share;
     scatter(r, sums, 3, node, lanes_of(mesh, batch));
   }
 }
@@ -367,7 +367,7 @@ constexpr CellLoopTable table = {W,
                                  continuity<kind>,
                                  diffusion<kind>,
                                  drive<kind>,
-                                 effective_gradient<kind>};
+                                 mean_gradient<kind>};
 
 constexpr const CellLoopTable* tables[4] = {&table<0>, &table<1>, &table<2>, &table<3>};
 

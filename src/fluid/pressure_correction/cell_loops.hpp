@@ -42,9 +42,8 @@ class CellLoops {
   void diffusion(const double* coefficient, double* values) const { table_->diffusion(mesh_, coefficient, values); }
   /// [nodes]: what a fall of the pressure by 1 Pa/m adds to the right side of momentum() in its direction.
   void drive(const MomentumTerms& in, double* sums) const { table_->drive(mesh_, in, sums); }
-  /// [nodes][3]: (1/nv) int_e G summed over the cells of each node, G the effective pressure gradient of the momentum
-  /// loop.
-  void effective_gradient(const MomentumTerms& in, double* sums) const { table_->effective_gradient(mesh_, in, sums); }
+  /// [nodes][3]: (1/nv) int_e c grad p summed over the cells of each node, c [padded cells]; null: 1.
+  void mean_gradient(const double* p, const double* c, double* sums) const { table_->mean_gradient(mesh_, p, c, sums); }
 
  private:
   const CellLoopTable* table_;

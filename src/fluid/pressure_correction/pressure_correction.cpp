@@ -63,9 +63,10 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
 
   const int n = mesh.nodes;
   for (auto* field : {&velocity_, &old_velocity_, &pressure_gradient_, &velocity_change_, &convecting_, &history_,
-                      &right_, &solution_, &flux_})
+                      &right_, &solution_, &flux_, &carrying_})
     field->assign(3 * n, 0.0);
-  for (auto* field : {&pressure_, &increment_, &old_increment_, &drag_, &old_drag_, &drag_now_, &effective_, &outflow_})
+  for (auto* field : {&pressure_, &increment_, &old_increment_, &drag_, &old_drag_, &drag_now_, &effective_, &outflow_,
+                      &following_, &old_following_, &lent_pressure_})
     field->assign(n, 0.0);
   for (auto* field : {&void_fraction_, &old_void_fraction_}) field->assign(n, 1.0);
   past_.assign(4 * n, 0.0);
@@ -88,23 +89,23 @@ PressureCorrection::PressureCorrection(const Mesh& mesh, Options& options, const
     void_fraction_ = old_void_fraction_ = load_.void_fraction;
   }
   start_from(options);
-  old_velocity_ = velocity_;
+  old_velocity_ = carrying_ = velocity_;
   if (turbulence_) {
     density_field_.assign(n, density_), viscosity_field_.assign(n, viscosity_);
     turbulence_->start(turbulent_flow(velocity_));
   }
-  terms_.pressure = pressure_.data();
   set_pressure_gradient();
   if (fluid.hydrostatic && !initial_pressure_given_)  // what the start will find
     for (int i = 0; i < n; ++i) vec3(&pressure_gradient_[3 * i]) = density_ * gravity;
 
   const std::size_t padded = loops_.padded_cells();
-  cell_values_.assign(17 * padded, 0.0);
+  cell_values_.assign(20 * padded, 0.0);
   double* next = cell_values_.data();
   const auto take = [&] { return std::exchange(next, next + padded); };
-  cell_ = {take(), take(), take(), take(), take(), {take(), take(), take()}, {take(), take(), take()}};
+  cell_ = {take(), take(), take(), take(), take(), {take(), take(), take()}, {take(), take(), take()}, take()};
   increment_factor_ = take();
   old_increment_factor_ = take();
+  lent_ = take();
   for (auto& scratch : scratch_) scratch = take();
 
   if (drive_) start_drive();
@@ -140,7 +141,7 @@ void PressureCorrection::prepare(double time, double dt, const Past& past) {
   if (past.steps == 0) {  // what the boundaries prescribe holds from the start
     boundaries_.evaluate(time, load_.void_fraction.data());
     boundaries_.impose(velocity_.data());
-    old_velocity_ = velocity_;
+    old_velocity_ = carrying_ = velocity_;
     if (turbulence_) turbulence_->start(turbulent_flow(velocity_));
   }
   boundaries_.evaluate(time + dt, load_.void_fraction.data());
@@ -171,35 +172,15 @@ void PressureCorrection::prepare(double time, double dt, const Past& past) {
   set_eddy_viscosity();
 }
 
-void PressureCorrection::set_cell_forces(const double* weight) {
-  if (!porous_) {
-    loops_.cell_forces({nullptr, nullptr, weight}, cell_);
-    return;
-  }
-  const int nv = mesh_.nodes_per_cell;
-  double* share = scratch_[0];  // of each cell in the loads of its nodes
-  for (std::size_t k = 0; k < loops_.padded_cells(); ++k)
-    share[k] = cell_.drag[k] / cell_.void_fraction[k] + 1e-9 * density_ * bdf_.c0;
-  std::vector<double> sums(mesh_.nodes, 0.0);
-  for (int c = 0; c < mesh_.cells; ++c)
-    for (int a = 0; a < nv; ++a)
-      sums[mesh_.cell_nodes[static_cast<std::size_t>(c) * nv + a]] += share[c] * mesh_.cell_volumes[c];
-  mesh_.sum_shared(sums.data(), 1);
-  for (int i = 0; i < mesh_.nodes; ++i)
-    for (int d = 0; d < 3; ++d)
-      load_per_drag_[3 * i + d] =
-          (load_.force[3 * i + d] - load_.response[i] * (convecting_[3 * i + d] - velocity_[3 * i + d])) / sums[i];
-  loops_.cell_forces({load_per_drag_.data(), share, weight}, cell_);
-}
-
 void PressureCorrection::set_momentum_terms() {
   const std::size_t padded = loops_.padded_cells();
   const double* void_fraction = porous_ ? load_.void_fraction.data() : nullptr;
   const double* body = has_body_force_ ? body_force_.data() : nullptr;
   const double* eddy = turbulence_ ? eddy_viscosity_.data() : nullptr;
   const Past before = past();
-  loops_.coefficients(
-      {density_, viscosity_, bdf_.c0, model_a_, convecting_.data(), void_fraction, drag_now_.data(), eddy}, cell_);
+  loops_.coefficients({density_, viscosity_, bdf_.c0, model_a_, convecting_.data(), void_fraction, drag_now_.data(),
+                       eddy, load_.following.data()},
+                      cell_);
   if (porous_ || has_weight_) set_cell_forces(has_weight_ ? weight_.data() : nullptr);
 
   terms_ = {};
@@ -215,21 +196,24 @@ void PressureCorrection::set_momentum_terms() {
     return;
   }
   // The mobilities of the last two corrections, from what is kept of their steps.
-  const auto mobility = [&](double rate, const std::vector<double>& alpha, const std::vector<double>& drag, double c,
-                            double* factor) {
+  const auto mobility = [&](double rate, const std::vector<double>& alpha, const std::vector<double>& drag,
+                            const std::vector<double>& following, double c, double* factor) {
     std::fill(factor, factor + padded, 0.0);
     if (rate == 0 || c == 0) return;
-    CoefficientTerms then{density_, viscosity_, rate, model_a_, convecting_.data(), alpha.data(), drag.data(), eddy};
-    CellCoefficients result{scratch_[0], scratch_[1], scratch_[2], factor, scratch_[3], {}, {}};
+    CoefficientTerms then{density_,     viscosity_,  rate, model_a_,        convecting_.data(),
+                          alpha.data(), drag.data(), eddy, following.data()};
+    CellCoefficients result{scratch_[0], scratch_[1], scratch_[2], factor, scratch_[3], {}, {}, scratch_[4]};
     loops_.coefficients(then, result);
     for (std::size_t k = 0; k < padded; ++k) factor[k] *= cell_.void_fraction[k] * density_ * c;
   };
-  mobility(before.rate, void_fraction_, drag_, bdf_.c1, increment_factor_);
-  mobility(before.old_rate, old_void_fraction_, old_drag_, bdf_.c2, old_increment_factor_);
+  mobility(before.rate, void_fraction_, drag_, following_, bdf_.c1, increment_factor_);
+  mobility(before.old_rate, old_void_fraction_, old_drag_, old_following_, bdf_.c2, old_increment_factor_);
+  set_lent(before.dt);
   terms_.pressure = pressure_.data(), terms_.increment = increment_.data(),
   terms_.old_increment = old_increment_.data();
   terms_.void_fraction = void_fraction, terms_.void_fraction_rate = load_.void_fraction_rate.data();
   terms_.cell_void_fraction = cell_.void_fraction, terms_.cell_pressure_share = cell_.pressure_share;
+  terms_.cell_following = cell_.following, terms_.cell_lent = lent_, terms_.lent_pressure = lent_pressure_.data();
   terms_.cell_drag = cell_.drag;
   terms_.increment_factor = increment_factor_, terms_.old_increment_factor = old_increment_factor_;
   for (int d = 0; d < 3; ++d) terms_.force[d] = cell_.force[d];
@@ -268,14 +252,15 @@ void PressureCorrection::assemble_momentum() {
   for (int i = 0; i < mesh_.owned_nodes; ++i) momentum_.values[graph_.diagonal[i]] += load_.response[i];
   for (int i = 0; i < mesh_.nodes; ++i)
     for (int d = 0; d < mesh_.dimension; ++d)
-      right_[3 * i + d] += load_.force[3 * i + d] + load_.response[i] * velocity_[3 * i + d];
+      right_[3 * i + d] += load_.force[3 * i + d] + load_.response[i] * carrying_[3 * i + d];
 }
 
 std::vector<double> PressureCorrection::continuity(const std::vector<double>& u, std::vector<double>& divergence) {
   const int n = mesh_.nodes;
   flux_ = u;
   if (porous_)
-    for (int i = 0; i < 3 * n; ++i) flux_[i] *= load_.void_fraction[i / 3];
+    for (int i = 0; i < 3 * n; ++i)
+      flux_[i] = load_.void_fraction[i / 3] * u[i] + load_.following[i / 3] * (u[i] - carrying_[i]);
   const bool balance = porous_ || has_weight_;
   ContinuityTerms in{flux_.data(), pressure_.data(), nullptr, cell_.stabilisation, {}};
   for (int d = 0; d < 3; ++d) in.balance[d] = balance ? cell_.balance[d] : nullptr;
@@ -305,9 +290,7 @@ void PressureCorrection::assemble_pressure(const Past& past) {
   // In the first two steps gamma/dt and the convecting velocity change at once, and with them the matrix by orders.
   const bool start = past.steps < 2 || renew_, stepped = std::abs(bdf_.c0 / matrix_rate_ - 1) > 1e-10;
   if (!start && !porous_ && !stepped && ++matrix_age_ < longest_matrix_age) return;
-  std::vector<double> coefficient(loops_.padded_cells());
-  for (std::size_t k = 0; k < coefficient.size(); ++k)
-    coefficient[k] = cell_.void_fraction[k] * cell_.mobility[k] + cell_.stabilisation[k];
+  const std::vector<double> coefficient = pressure_coefficient();
   pressure_solver_.matrix().zero();
   loops_.diffusion(coefficient.data(), pressure_solver_.matrix().values.data());
   pressure_solver_.update(start);
@@ -350,7 +333,8 @@ FluidStep PressureCorrection::advance(double time, double dt) {
   step.mass_residual = mass_residual_;
   const FluidStep balance = report(dt);
   if (energy_) step.heat = energy_->heat();
-  step.courant = balance.courant, step.momentum = balance.momentum, step.boundary_force = balance.boundary_force;
+  step.courant = balance.courant, step.boundary_force = balance.boundary_force;
+  step.momentum = balance.momentum, step.lent = balance.lent;
   step.drive_gradient = balance.drive_gradient, step.drive_velocity = balance.drive_velocity;
   return step;
 }

@@ -38,9 +38,11 @@ class PressureCorrection : public Fluid {
  public:
   PressureCorrection(const Mesh& mesh, Options& options, const FluidOptions& fluid, const Vec3& gravity);
 
+  void meet_continuity(std::span<const double> solids_flux) override;
   FluidStep advance(double time, double dt) override;
   double courant_rate() const override;
   std::span<const double> velocity() const override { return velocity_; }
+  std::span<const double> carrying_velocity() const override { return carrying_; }
   std::span<const double> velocity_change() const override { return velocity_change_; }
   std::span<const double> pressure() const override { return pressure_; }
   std::span<const double> pressure_gradient() const override { return pressure_gradient_; }
@@ -57,6 +59,7 @@ class PressureCorrection : public Fluid {
   void restored() override;
 
  private:
+  std::vector<StateArray> arrays() override;
   /// The numbers of the last two steps; kept with the nodal arrays so that a restart finds them.
   struct Past {
     int steps = 0;                  ///< taken, up to 2
@@ -92,6 +95,15 @@ class PressureCorrection : public Fluid {
   /// [cells][points][3] the superficial velocity that the pressure equation balanced, at the quadrature points.
   std::vector<double> superficial_velocity(const std::vector<double>& phi) const;
   void set_pressure_gradient();
+  /// s_e of the last step, times what the lent impulse is as a force over this one.
+  void set_lent(double last_dt);
+  /// [padded cells] m3 s/kg: what turns grad phi into the volume flux of the correction and of the stabilisation.
+  std::vector<double> pressure_coefficient() const;
+  /// u - k grad phi at the nodes, with k from the node's own drag: what the correction gives the particles and takes
+  /// from the fluid are then equal to round-off.
+  void set_carrying_velocity(const std::vector<double>& phi);
+  /// N s, what the step lent to particles that follow, dt int s grad p. Collective.
+  Vec3 lent_impulse() const;
   void accept(const Past& before, double dt, std::vector<double>& phi, const std::vector<double>& divergence);
   void check_balance(double flows, double volume_rate) const;
   /// Outflow less what alpha makes room for, relative to VolumeScale; `prescribed` at the boundaries with a given
@@ -122,8 +134,10 @@ class PressureCorrection : public Fluid {
   // The state: fields of step n, n-1 and of the corrections in between.
   std::vector<double> velocity_, old_velocity_, pressure_, increment_, old_increment_;
   std::vector<double> void_fraction_, old_void_fraction_, drag_, old_drag_;  ///< of the last two corrections
-  std::vector<double> pressure_gradient_, velocity_change_;
-  std::vector<double> past_;  ///< [nodes][4], Past at every node
+  std::vector<double> pressure_gradient_, velocity_change_, carrying_;
+  std::vector<double> following_, old_following_;  ///< s of the last two corrections
+  std::vector<double> lent_pressure_;              ///< p^{n-1} + phi^n, the pressure that the last step felt
+  std::vector<double> past_;                       ///< [nodes][4], Past at every node
 
   // Of the present step.
   bool porous_ = false, renew_ = true;
@@ -136,7 +150,7 @@ class PressureCorrection : public Fluid {
       effective_, projection_;
   std::vector<double> cell_values_;  ///< the arrays of CellCoefficients and the increment factors, one after the other
   CellCoefficients cell_{};
-  double *increment_factor_ = nullptr, *old_increment_factor_ = nullptr, *scratch_[4] = {};
+  double *increment_factor_ = nullptr, *old_increment_factor_ = nullptr, *lent_ = nullptr, *scratch_[5] = {};
   MomentumTerms terms_{};
   std::vector<double> eddy_viscosity_;            ///< [padded cells] Pa s; empty without turbulence
   std::vector<double> outflow_;                   ///< [nodes] m3/s through the pressure boundaries, of the last step

@@ -81,6 +81,7 @@ FluidStep PressureCorrection::report(double dt) const {
     for (int d = 0; d < 3; ++d) momentum[d] += density_ * mass_[i] * load_.void_fraction[i] * velocity_[3 * i + d];
   MPI_Allreduce(MPI_IN_PLACE, momentum.data(), 3, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   step.momentum = vec3(momentum.data());
+  step.lent = lent_impulse();
   step.courant = courant_rate() * dt;
   return step;
 }

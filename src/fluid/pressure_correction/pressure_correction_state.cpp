@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "fluid/assembly/flow_table.hpp"
+#include "fluid/initial_projection.hpp"
 #include "fluid/initial_state.hpp"
 #include "fluid/monolithic.hpp"
 #include "fluid/pressure_correction/pressure_correction.hpp"
@@ -28,6 +29,13 @@ void PressureCorrection::start_from(Options& options) {
   if (!start.temperature.empty()) energy_->set_initial(start.temperature);
 }
 
+void PressureCorrection::meet_continuity(std::span<const double> solids_flux) {
+  boundaries_.evaluate(0, load_.void_fraction.data());
+  boundaries_.impose(velocity_.data());
+  project_onto_continuity(mesh_, boundaries_, load_.void_fraction, solids_flux, velocity_);
+  old_velocity_ = carrying_ = velocity_;
+}
+
 PressureCorrection::Past PressureCorrection::past() const {
   double values[4] = {};
   if (mesh_.nodes > 0) std::copy(past_.begin(), past_.begin() + 4, values);
@@ -48,10 +56,12 @@ void PressureCorrection::set_static_pressure(const Past& before) {
   set_momentum_terms();
   if (!porous_ && !has_body_force_) return;
   set_cell_forces(has_body_force_ ? body_force_.data() : nullptr);
+  for (std::size_t k = 0; porous_ && k < loops_.padded_cells(); ++k)  // nothing was lent yet that would come back
+    for (double* balance : cell_.balance)
+      balance[k] *= cell_.pressure_share[k] / (cell_.pressure_share[k] + cell_.following[k]);
   assemble_pressure(before);
-  std::vector<double> coefficient(loops_.padded_cells()), sums(3 * mesh_.nodes, 0.0), right(mesh_.nodes);
-  for (std::size_t k = 0; k < coefficient.size(); ++k)
-    coefficient[k] = cell_.void_fraction[k] * cell_.mobility[k] + cell_.stabilisation[k];
+  const std::vector<double> coefficient = pressure_coefficient();
+  std::vector<double> sums(3 * mesh_.nodes, 0.0), right(mesh_.nodes);
   const std::vector<double> zero(3 * mesh_.nodes, 0.0);
   loops_.continuity({zero.data(),
                      zero.data(),
@@ -69,7 +79,7 @@ void PressureCorrection::set_static_pressure(const Past& before) {
 
 void PressureCorrection::set_pressure_gradient() {
   std::fill(pressure_gradient_.begin(), pressure_gradient_.end(), 0.0);
-  loops_.effective_gradient(terms_, pressure_gradient_.data());
+  loops_.mean_gradient(pressure_.data(), nullptr, pressure_gradient_.data());
   mesh_.sum_shared(pressure_gradient_.data(), 3);
   for (std::size_t i = 0; i < pressure_gradient_.size(); ++i) pressure_gradient_[i] /= mass_[i / 3];
 }
@@ -78,16 +88,24 @@ void PressureCorrection::accept(const Past& before, double dt, std::vector<doubl
                                 const std::vector<double>& divergence) {
   const int n = mesh_.nodes;
   const auto& outlet = boundaries_.pressure_boundary();
-  set_pressure_gradient();
-  if (drive_) accept_drive();
-  for (int i = 0; i < 3 * n; ++i) velocity_change_[i] = solution_[i] - velocity_[i];
+  velocity_change_ = carrying_;
+  set_carrying_velocity(phi);
+  for (int i = 0; i < 3 * n; ++i) velocity_change_[i] = carrying_[i] - velocity_change_[i];
+  for (int i = 0; i < n; ++i) lent_pressure_[i] = pressure_[i] + phi[i];
+  std::swap(old_following_, following_);
+  following_ = load_.following;
   std::swap(old_increment_, increment_);
   std::swap(increment_, phi);
   for (int i = 0; i < n; ++i) {
     const double rotation = scheme_.rotational ? viscosity_ * divergence[i] : 0;
-    const double share = model_a_ ? load_.void_fraction[i] : 1.0;
+    // What the correction leaves of the viscous force, alpha mu grad div u, as a pressure: (P + s) p, div u being that
+    // of alpha + s of the volume.
+    const double alpha = load_.void_fraction[i], follows = load_.following[i];
+    const double share = (model_a_ ? alpha + follows : 1.0) * (alpha + follows) / alpha;
     pressure_[i] = outlet[i] >= 0 ? boundaries_.pressure()[i] : pressure_[i] + increment_[i] - rotation / share;
   }
+  set_pressure_gradient();
+  if (drive_) accept_drive();
   std::swap(old_velocity_, velocity_);
   velocity_ = solution_;
   std::swap(old_void_fraction_, void_fraction_);
@@ -106,10 +124,11 @@ std::vector<double> PressureCorrection::superficial_velocity(const std::vector<d
   const std::size_t nv = mesh_.nodes_per_cell, points = table.points;
   const bool balance = porous_ || has_weight_;
   std::vector<double> result(3 * points * mesh_.cells);
+  const std::vector<double> coefficient = pressure_coefficient();
   for (int c = 0; c < mesh_.cells; ++c) {
     const double* x = &mesh_.cell_coordinates[3 * nv * c];
     const int* node = &mesh_.cell_nodes[nv * c];
-    const double mobility = cell_.void_fraction[c] * cell_.mobility[c], tau = cell_.stabilisation[c];
+    const double tau = cell_.stabilisation[c];
     Vec3 known = Vec3::Zero();
     if (balance)
       for (int d = 0; d < mesh_.dimension; ++d) known[d] = cell_.balance[d][c];
@@ -127,7 +146,7 @@ std::vector<double> PressureCorrection::superficial_velocity(const std::vector<d
       if (mesh_.dimension == 2) J(2, 2) = 1;
       const Mat3 inverse = J.inverse().transpose();
       vec3(&result[3 * (points * c + q)]) =
-          flux - (mobility + tau) * (inverse * increment) - tau * (inverse * rest + known - projected);
+          flux - coefficient[c] * (inverse * increment) - tau * (inverse * rest + known - projected);
     }
   }
   return result;
@@ -142,6 +161,10 @@ double PressureCorrection::courant_rate() const {
 std::vector<Fluid::StateArray> PressureCorrection::state() {
   // Matrices and hierarchy are made afresh after a checkpoint, as after a restart: both go on with the same bits.
   renew_ = true;
+  return arrays();
+}
+
+std::vector<Fluid::StateArray> PressureCorrection::arrays() {
   std::vector<StateArray> arrays = {{"velocity", &velocity_, 3},
                                     {"old_velocity", &old_velocity_, 3},
                                     {"pressure", &pressure_, 1},
@@ -153,6 +176,10 @@ std::vector<Fluid::StateArray> PressureCorrection::state() {
                                     {"old_drag", &old_drag_, 1},
                                     {"pressure_gradient", &pressure_gradient_, 3},
                                     {"velocity_change", &velocity_change_, 3},
+                                    {"carrying_velocity", &carrying_, 3},
+                                    {"following", &following_, 1},
+                                    {"old_following", &old_following_, 1},
+                                    {"lent_pressure", &lent_pressure_, 1},
                                     {"fluid_steps", &past_, 4}};
   if (drive_) {
     arrays.push_back({"drive_gradient", &last_drive_, 1});
@@ -174,7 +201,7 @@ std::vector<Fluid::Scalar> PressureCorrection::scalars() const {
 }
 
 Turbulence::Flow PressureCorrection::turbulent_flow(const std::vector<double>& velocity) const {
-  return {velocity, density_field_, viscosity_field_, load_.void_fraction};
+  return {velocity, density_field_, viscosity_field_, load_.void_fraction, load_.turbulence, load_.dissipation_factor};
 }
 
 void PressureCorrection::set_eddy_viscosity() {

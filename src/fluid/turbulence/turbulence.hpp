@@ -35,8 +35,11 @@ class Turbulence {
     std::span<const double> density;        ///< [nodes] kg/m3
     std::span<const double> viscosity;      ///< [nodes] Pa s, molecular
     std::span<const double> void_fraction;  ///< [nodes]
-    std::span<const double> source = {};    ///< [nodes] W, load vector: work of particles that becomes k; empty: none
-    bool compressible = false;              ///< dilatation of the flow does work on k (C18)
+    /// [nodes] W, load vector: what particles add to k (negative: take from it); empty: none. epsilon gets factor
+    /// epsilon/k times that, omega (factor - 1) omega/k.
+    std::span<const double> source = {};
+    double dissipation_factor = 0;
+    bool compressible = false;  ///< dilatation of the flow does work on k (C18)
   };
 
   /// Reads `-fluid_turbulence...` and `-boundary_<name>_turbulence_...`; null for `none`. Collective.

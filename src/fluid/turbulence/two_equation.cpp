@@ -228,7 +228,11 @@ void TwoEquation<Model>::set_sources(const Flow& flow, const std::vector<Turbule
       energy.production[i] += std::max(0.0, -rate) * p.k;
       energy.destruction[i] += std::max(0.0, rate);
     }
-    if (!flow.source.empty()) energy.production[i] += std::max(0.0, flow.source[i]) / rule_.volume()[i];
+    if (flow.source.empty() || flow.source[i] == 0) continue;
+    const double added = flow.source[i] / rule_.volume()[i], k = std::max(p.k, tiny);
+    add(added, p.k, energy.production[i], energy.destruction[i]);
+    const double factor = flow.dissipation_factor - (epsilon ? 0 : 1);  // d(omega)/omega = d(epsilon)/epsilon - dk/k
+    add(factor * added * p.second / k, p.second, second.production[i], second.destruction[i]);
   }
 }
 
