@@ -32,6 +32,9 @@ void MonolithicOptions::options(OptionGroup& option) {
          non_negative);
   option("grad_div", grad_div, "-", "factor of the grad-div term; by default 1 for equal_order, 0 for taylor_hood",
          non_negative);
+  option(
+      "pressure_stage", pressure_stage, {"auto", "yes", "no"},
+      "equal_order: a multigrid cycle for the pressure follows the local preconditioner; auto: from 50,000 unknowns");
 }
 
 Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& fluid, const Vec3& gravity)
@@ -39,7 +42,7 @@ Monolithic::Monolithic(const Mesh& mesh, Options& options, const FluidOptions& f
       options_(read_options(options)),
       boundary_(mesh, options, fluid.density),
       system_(mesh, boundary_, options_.element == "taylor_hood" ? 2 : 1),
-      solver_(system_),
+      solver_(system_, options_.pressure_stage),
       energy_(EnergyEquation::create(mesh, options, fluid.energy, fluid.density, gravity, boundary_,
                                      system_.space().order)),
       turbulence_(Turbulence::create(mesh, options, boundary_)),

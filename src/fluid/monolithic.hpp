@@ -18,6 +18,7 @@ namespace silt {
 struct MonolithicOptions {
   std::string element = "equal_order";
   std::optional<double> supg, pspg, grad_div;
+  std::string pressure_stage = "auto";
   void options(OptionGroup& option);
 };
 

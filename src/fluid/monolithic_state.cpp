@@ -7,6 +7,7 @@
 namespace silt {
 
 std::vector<Fluid::StateArray> Monolithic::state() {
+  solver_.renew();
   // A checkpoint sees the vertices as [nodes][3] and the middles by cell.
   const LagrangeSpace& space = system_.space();
   const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;

@@ -14,6 +14,8 @@ constexpr PetscInt direct_rows = 120000;
 /// Largest plane Taylor-Hood system solved directly from the start: a sparse factor in the plane is cheap, and the
 /// Schur complement converges slowly in steady flow.
 constexpr PetscInt plane_rows = 200000;
+/// Smallest equal-order system to which a multigrid cycle for the pressure is worth its while.
+constexpr PetscInt stage_rows = 50000;
 
 bool option_given(const std::string& name) {
   PetscBool found = PETSC_FALSE;
@@ -26,11 +28,15 @@ void default_option(const std::string& name, const char* value) {
 
 }  // namespace
 
-NewtonSolver::NewtonSolver(const FlowSystem& system) : system_(system), matrix_(system.create_matrix()) {
+NewtonSolver::NewtonSolver(const FlowSystem& system, const std::string& pressure_stage)
+    : system_(system), matrix_(system.create_matrix()) {
   residual_ = system.create_vector();
   start_ = system.create_vector();
   SILT_PETSC(VecGetSize(start_, &rows_));
   tolerance_given_ = option_given("-fluid_snes_atol");
+  linear_floor_given_ = option_given("-fluid_ksp_atol");
+  if (system.equal_order() && (pressure_stage == "yes" || (pressure_stage == "auto" && rows_ >= stage_rows)))
+    stage_ = std::make_unique<PressureStage>(system);
   create(snes_.out(), "fluid_", false);
 }
 
@@ -55,9 +61,11 @@ void NewtonSolver::create(SNES* snes, const char* prefix, bool direct) {
   } else if (system_.equal_order()) {
     SILT_PETSC(KSPSetType(ksp, KSPGMRES));
     SILT_PETSC(KSPSetPCSide(ksp, PC_RIGHT));
-    SILT_PETSC(PCSetType(pc, PCASM));
+    SILT_PETSC(PCSetType(pc, stage_ ? PCSHELL : PCASM));
     default_option(options + "sub_pc_type", "ilu");
-    default_option(options + "sub_pc_factor_levels", "1");
+    const bool hexahedra = system_.space().mesh.cell == Cell::hexahedron;
+    default_option(options + "sub_pc_factor_levels", hexahedra ? "0" : "1");
+    if (stage_) stage_->attach(pc, prefix);
   } else {
     SILT_PETSC(KSPSetType(ksp, KSPFGMRES));
     SILT_PETSC(PCSetType(pc, PCFIELDSPLIT));
@@ -74,6 +82,15 @@ void NewtonSolver::create(SNES* snes, const char* prefix, bool direct) {
   SILT_PETSC(KSPGMRESSetRestart(ksp, 100));
   SILT_PETSC(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 400));
   SILT_PETSC(SNESSetFromOptions(*snes));
+  SILT_PETSC(KSPGetTolerances(ksp, &linear_tolerance_, nullptr, nullptr, nullptr));
+  PetscBool exact = PETSC_FALSE;
+  SILT_PETSC(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &exact));
+  if (!exact && !option_given(options + "ksp_rtol") && !option_given(options + "snes_ksp_ew")) {
+    constexpr double loosest = 1e-2;
+    SILT_PETSC(SNESKSPSetUseEW(*snes, PETSC_TRUE));
+    SILT_PETSC(
+        SNESKSPSetParametersEW(*snes, 1, loosest, loosest, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+  }
   PCType type;
   SILT_PETSC(PCGetType(pc, &type));
   if (std::string(type) == PCLU && !option_given(options + "pc_factor_mat_solver_type")) {
@@ -94,10 +111,19 @@ PetscErrorCode NewtonSolver::residual(SNES, Vec x, Vec r, void* self) {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NewtonSolver::jacobian(SNES, Vec x, Mat, Mat matrix, void* self) {
+PetscErrorCode NewtonSolver::jacobian(SNES snes, Vec x, Mat, Mat matrix, void* self) {
   PetscFunctionBeginUser;
   const auto& solver = *static_cast<NewtonSolver*>(self);
   PetscCall(solver.system_.jacobian(*solver.fields_, x, matrix));
+  if (!solver.norms_.empty() && !solver.linear_floor_given_) {
+    // A linear residual well below what ends Newton's method is lost labour.
+    PetscReal absolute, relative;
+    PetscCall(SNESGetTolerances(snes, &absolute, &relative, nullptr, nullptr, nullptr));
+    KSP ksp;
+    PetscCall(SNESGetKSP(snes, &ksp));
+    PetscCall(KSPSetTolerances(ksp, PETSC_DEFAULT, 0.3 * std::max(absolute, relative * solver.norms_.front()),
+                               PETSC_DEFAULT, PETSC_DEFAULT));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -126,10 +152,13 @@ SNESConvergedReason NewtonSolver::run(SNES snes, Vec x, Result& result) {
 
 void NewtonSolver::linear_answer(const StepFields& fields, Vec x, Vec b, Vec y) {
   fields_ = &fields;
+  if (stage_) stage_->prepare(fields);
   SILT_PETSC(system_.jacobian(fields, x, matrix_));
   KSP ksp;
   SILT_PETSC(SNESGetKSP(snes_, &ksp));
   SILT_PETSC(KSPSetOperators(ksp, matrix_, matrix_));
+  // Newton's method leaves its own tolerance behind.
+  SILT_PETSC(KSPSetTolerances(ksp, linear_tolerance_, 1e-50, PETSC_DEFAULT, PETSC_DEFAULT));
   KSPConvergedReason reason;
   SILT_PETSC(KSPSolve(ksp, b, y));
   SILT_PETSC(KSPGetConvergedReason(ksp, &reason));
@@ -139,6 +168,7 @@ void NewtonSolver::linear_answer(const StepFields& fields, Vec x, Vec b, Vec y) 
 
 NewtonSolver::Result NewtonSolver::solve(const StepFields& fields, Vec x, double scale) {
   fields_ = &fields;
+  if (stage_) stage_->prepare(fields);
   scale = std::max(scale, 1e-290);  // a fluid at rest has converged
   Result result;
   SILT_PETSC(VecCopy(x, start_));

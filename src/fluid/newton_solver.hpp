@@ -1,19 +1,26 @@
 #pragma once
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "fluid/assembly/flow_system.hpp"
+#include "fluid/pressure_stage.hpp"
 
 namespace silt {
 
 /// Newton's method (SNES, option prefix `fluid_`) for the steps of a FlowSystem.
 ///
-/// Linear solver unless options say otherwise: equal order GMRES (right) with additive Schwarz, overlap 1, ILU(1);
-/// Taylor-Hood MUMPS in the plane, in space and for large systems FGMRES with an upper Schur complement (selfp), block
-/// ILU for the velocity and BoomerAMG for the pressure. When Newton fails and the system is small the step is tried
-/// once more with MUMPS.
+/// Linear solver unless options say otherwise: equal order GMRES (right) with additive Schwarz, overlap 1, ILU(1), on
+/// hexahedra, whose rows are long, ILU(0), in large systems followed by a PressureStage; Taylor-Hood MUMPS in the
+/// plane, in space and for large systems FGMRES with an upper Schur complement (selfp), block ILU for the velocity and
+/// BoomerAMG for the pressure. Iterative solvers stop where Newton's method gains no more (Eisenstat & Walker 1996,
+/// their first choice, at most 1e-2) unless
+/// `-fluid_ksp_rtol` or `-fluid_snes_ksp_ew` is given. When Newton fails and the system is small the step is tried once
+/// more with MUMPS.
 class NewtonSolver {
  public:
-  explicit NewtonSolver(const FlowSystem& system);
+  /// `pressure_stage` yes, no or auto (large systems).
+  explicit NewtonSolver(const FlowSystem& system, const std::string& pressure_stage = "auto");
   ~NewtonSolver();
   NewtonSolver(const NewtonSolver&) = delete;
   NewtonSolver& operator=(const NewtonSolver&) = delete;
@@ -26,6 +33,11 @@ class NewtonSolver {
   Result solve(const StepFields& fields, Vec x, double scale);
   /// Solves J(x) y = b with the Jacobian of the step at x. Throws SolveFailure. Collective.
   void linear_answer(const StepFields& fields, Vec x, Vec b, Vec y);
+  /// Forgets what preconditioners keep between steps, so that a run goes on from a checkpoint with the bits of one that
+  /// is restarted from it.
+  void renew() {
+    if (stage_) stage_->renew();
+  }
   /// Residual norms of the last solve.
   const std::vector<double>& norms() const { return norms_; }
   Mat matrix() const { return matrix_; }
@@ -41,9 +53,11 @@ class NewtonSolver {
   const StepFields* fields_ = nullptr;
   MatHandle matrix_;
   VecHandle residual_, start_;
+  std::unique_ptr<PressureStage> stage_;  // before the solver that uses it
   SnesHandle snes_, direct_;
   PetscInt rows_ = 0;
-  bool tolerance_given_ = false;
+  bool tolerance_given_ = false, linear_floor_given_ = false;
+  double linear_tolerance_ = 0;  ///< of linear_answer()
   std::vector<double> norms_;
 };
 
