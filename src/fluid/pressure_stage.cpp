@@ -63,24 +63,26 @@ void PressureStage::prepare(const StepFields& fields) {
 void PressureStage::assemble(const StepFields& fields, double rate) {
   const FlowParameters& k = fields.parameters;
   const std::size_t padded = loops_.padded_cells();
-  std::vector<double> values(5 * padded), coefficient(padded);
+  std::vector<double> values(6 * padded), coefficient(padded);
   const CellCoefficients cell{values.data(),
                               values.data() + padded,
                               values.data() + 2 * padded,
                               values.data() + 3 * padded,
                               values.data() + 4 * padded,
                               {},
-                              {}};
+                              {},
+                              values.data() + 5 * padded};
   std::vector<double> eddy;
   if (!fields.eddy_viscosity.empty()) {
     eddy = fields.eddy_viscosity;
     eddy.resize(padded, eddy.empty() ? 0.0 : eddy.back());
   }
-  loops_.coefficients({k.density, k.viscosity, rate, k.model_a, fields.velocity_old.data(), fields.alpha.data(),
-                       fields.response.data(), eddy.empty() ? nullptr : eddy.data()},
-                      cell);
+  loops_.coefficients(
+      {k.density, k.viscosity, rate, k.model_a, fields.velocity_old.data(), fields.alpha.data(), fields.response.data(),
+       eddy.empty() ? nullptr : eddy.data(), fields.following.empty() ? nullptr : fields.following.data()},
+      cell);
   for (std::size_t c = 0; c < padded; ++c)
-    coefficient[c] = cell.void_fraction[c] * cell.mobility[c] + k.pspg * cell.stabilisation[c];
+    coefficient[c] = (cell.void_fraction[c] + cell.following[c]) * cell.mobility[c] + k.pspg * cell.stabilisation[c];
   matrix_.zero();
   loops_.diffusion(coefficient.data(), matrix_.values.data());
   for (int i = 0; i < mesh_.nodes; ++i)
