@@ -55,6 +55,7 @@ class Monolithic final : public Fluid {
   const Turbulence* turbulence() const override { return turbulence_.get(); }
   std::vector<Scalar> scalars() const override;
   std::vector<StateArray> state() override;
+  std::vector<StateArray> arrays() override;
   void restored() override;
 
   /// Adds a force per volume (N/m3) to the momentum equation, as `-fluid_body_force` does.

@@ -7,7 +7,11 @@
 namespace silt {
 
 std::vector<Fluid::StateArray> Monolithic::state() {
-  solver_.renew();
+  solver_.renew();  // a restart has no factors of earlier steps either
+  return arrays();
+}
+
+std::vector<Fluid::StateArray> Monolithic::arrays() {
   // A checkpoint sees the vertices as [nodes][3] and the middles by cell.
   const LagrangeSpace& space = system_.space();
   const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;
@@ -85,7 +89,7 @@ std::vector<Fluid::Scalar> Monolithic::scalars() const {
 
 Turbulence::Flow Monolithic::turbulent_flow() const {
   return {velocity(),          density_field_,   viscosity_field_,
-          load_.void_fraction, load_.turbulence, load_.dissipation_factor};
+          load_.void_fraction, load_.turbulence, false, load_.dissipation_factor};
 }
 
 }  // namespace silt

@@ -38,8 +38,8 @@ class Turbulence {
     /// [nodes] W, load vector: what particles add to k (negative: take from it); empty: none. epsilon gets factor
     /// epsilon/k times that, omega (factor - 1) omega/k.
     std::span<const double> source = {};
-    double dissipation_factor = 0;
     bool compressible = false;  ///< dilatation of the flow does work on k (C18)
+    double dissipation_factor = 0;
   };
 
   /// Reads `-fluid_turbulence...` and `-boundary_<name>_turbulence_...`; null for `none`. Collective.
