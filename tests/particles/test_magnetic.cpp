@@ -228,6 +228,7 @@ TEST_CASE("Magnets in a viscous fluid and a uniform field form chains along it",
   };
   const double before = order();
   for (int n = 0; n < 20; ++n) {
+    run.engine.store.want_actions();
     for (auto& action : run.engine.store.action) action.exchange = 6 * pi * 1e-3 * radius;
     run.engine.advance(n * 4e-6, 4e-6);
   }
