@@ -88,8 +88,8 @@ std::vector<Fluid::Scalar> Monolithic::scalars() const {
 }
 
 Turbulence::Flow Monolithic::turbulent_flow() const {
-  return {velocity(),          density_field_,   viscosity_field_,
-          load_.void_fraction, load_.turbulence, false, load_.dissipation_factor};
+  return {velocity(),       density_field_, viscosity_field_,        load_.void_fraction,
+          load_.turbulence, false,          load_.dissipation_factor};
 }
 
 }  // namespace silt

@@ -201,7 +201,8 @@ std::vector<Fluid::Scalar> PressureCorrection::scalars() const {
 }
 
 Turbulence::Flow PressureCorrection::turbulent_flow(const std::vector<double>& velocity) const {
-  return {velocity, density_field_, viscosity_field_, load_.void_fraction, load_.turbulence, false, load_.dissipation_factor};
+  return {velocity,         density_field_, viscosity_field_,        load_.void_fraction,
+          load_.turbulence, false,          load_.dissipation_factor};
 }
 
 void PressureCorrection::set_eddy_viscosity() {
