@@ -66,8 +66,8 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
     if (options.given("fluid_energy") && !fluid.energy)
       throw UserError("-fluid_energy no is not available with -fluid_type compressible");
     Drive::refuse(options, "with -fluid_type compressible");
-    for (const char* name : {"fluid_initial_solve", "fluid_initial_file"})
-      if (options.given(name)) throw UserError(fmt::format("-{} is not available with -fluid_type compressible", name));
+    if (options.given("fluid_initial_solve"))
+      throw UserError("-fluid_initial_solve is not available with -fluid_type compressible");
     if (options.given("fluid_void_fraction"))
       throw UserError("-fluid_void_fraction is not available with -fluid_type compressible");
     auto gas = make_compressible(mesh, options, fluid, gravity);

@@ -41,7 +41,7 @@ std::vector<double> potential_velocity(const Mesh& mesh, const BoundaryCondition
 }
 
 InitialState initial_state(const Mesh& mesh, Options& options, const BoundaryConditions& boundary,
-                           const std::vector<double>& places, bool with_temperature) {
+                           const std::vector<double>& places, bool with_temperature, bool also_on_restart) {
   InitialStateOptions given;
   options.read("fluid", given);
   InitialState start;
@@ -56,7 +56,7 @@ InitialState initial_state(const Mesh& mesh, Options& options, const BoundaryCon
       throw UserError(
           fmt::format("-{} and -{} exclude each other", name, solve ? "fluid_initial_solve" : "fluid_initial_file"));
   }
-  if (options.given("restart")) return start;
+  if (options.given("restart") && !also_on_restart) return start;
   if (given.solve == "potential") {
     if (options.given("fluid_drive_direction"))
       throw UserError("-fluid_initial_solve potential has no meaning for a driven flow (-fluid_drive_...); use stokes");

@@ -18,7 +18,7 @@ struct InitialStateOptions {
         "initial velocity of an incompressible flow from its boundaries: potential, without friction; stokes, without "
         "inertia, and with its pressure; none: by formulas");
     option("initial_file", file,
-           "initial velocity, pressure and temperature of an incompressible flow from an output of an earlier run, "
+           "initial velocity, pressure, temperature and turbulence from an output of an earlier run, "
            "<output>/fluid/<number>.h5, interpolated from its mesh to this one");
   }
 };
@@ -31,10 +31,10 @@ struct InitialState {
 };
 
 /// Reads `-fluid_initial_solve` and `-fluid_initial_file`; nothing when the run goes on from a checkpoint. `places`:
-/// where the velocity is wanted, the mesh's nodes first. `boundary` has been evaluated at the start. Throws UserError.
-/// Collective.
+/// where the velocity is wanted, the mesh's nodes first. `boundary` has been evaluated at the start.
+/// `also_on_restart`: a gas takes its units from the state it started from. Throws UserError. Collective.
 InitialState initial_state(const Mesh& mesh, Options& options, const BoundaryConditions& boundary,
-                           const std::vector<double>& places, bool with_temperature);
+                           const std::vector<double>& places, bool with_temperature, bool also_on_restart = false);
 
 /// Velocity of the potential flow between the boundaries, [nodes][3] m/s: alpha u = grad phi, div grad phi = 0, the
 /// flow given on `velocity` and `mass_flow` boundaries, phi = 0 on `pressure` boundaries, no flow through the others;

@@ -72,8 +72,6 @@ class Monolithic final : public Fluid {
   const std::vector<double>& newton_norms() const { return solver_.norms(); }
 
  private:
-  /// A closed domain whose boundaries let in more than they let out has no solution.
-  void check_balance() const;
   void choose_scales();
   /// The steady flow without inertia, for a start.
   void solve_stokes();

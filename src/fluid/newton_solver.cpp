@@ -17,6 +17,14 @@ constexpr PetscInt plane_rows = 200000;
 /// Smallest equal-order system to which a multigrid cycle for the pressure is worth its while.
 constexpr PetscInt stage_rows = 50000;
 
+/// Loosest relative tolerance of a linear solve inside Newton's method.
+constexpr double loosest = 1e-2;
+/// A Jacobian stays, and factors serve for a new one, when the last iteration left at most this share of the residual.
+constexpr double kept = 2 * loosest;
+/// Solves after which factors are made anew, and the growth of the linear iterations that tells of too old ones.
+constexpr int longest_factor_age = 10;
+constexpr double most_growth = 1.3;
+
 bool option_given(const std::string& name) {
   PetscBool found = PETSC_FALSE;
   SILT_PETSC(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &found));
@@ -86,7 +94,7 @@ void NewtonSolver::create(SNES* snes, const char* prefix, bool direct) {
   PetscBool exact = PETSC_FALSE;
   SILT_PETSC(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &exact));
   if (!exact && !option_given(options + "ksp_rtol") && !option_given(options + "snes_ksp_ew")) {
-    constexpr double loosest = 1e-2;
+    may_keep_ = !option_given(options + "snes_lag_jacobian");
     SILT_PETSC(SNESKSPSetUseEW(*snes, PETSC_TRUE));
     SILT_PETSC(
         SNESKSPSetParametersEW(*snes, 1, loosest, loosest, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
@@ -114,7 +122,13 @@ PetscErrorCode NewtonSolver::residual(SNES, Vec x, Vec r, void* self) {
 PetscErrorCode NewtonSolver::jacobian(SNES snes, Vec x, Mat, Mat matrix, void* self) {
   PetscFunctionBeginUser;
   const auto& solver = *static_cast<NewtonSolver*>(self);
-  PetscCall(solver.system_.jacobian(*solver.fields_, x, matrix));
+  const auto& norms = solver.norms_;
+  const bool first = norms.size() < 2, own = snes == solver.snes_;
+  const bool close = !first && norms.back() <= kept * norms[norms.size() - 2];
+  if (solver.stage_ && own) solver.stage_->keep_factors(first ? solver.factors_serve_ : close);
+  // The second Jacobian is the first that is made near the solution; it also begins the next step.
+  const bool stays = first ? solver.factors_serve_ && solver.jacobian_serves_ : close && norms.size() > 2;
+  if (!(solver.may_keep_ && own && stays)) PetscCall(solver.system_.jacobian(*solver.fields_, x, matrix));
   if (!solver.norms_.empty() && !solver.linear_floor_given_) {
     // A linear residual well below what ends Newton's method is lost labour.
     PetscReal absolute, relative;
@@ -152,7 +166,10 @@ SNESConvergedReason NewtonSolver::run(SNES snes, Vec x, Result& result) {
 
 void NewtonSolver::linear_answer(const StepFields& fields, Vec x, Vec b, Vec y) {
   fields_ = &fields;
-  if (stage_) stage_->prepare(fields);
+  if (stage_) {
+    stage_->prepare(fields);
+    stage_->keep_factors(false);
+  }
   SILT_PETSC(system_.jacobian(fields, x, matrix_));
   KSP ksp;
   SILT_PETSC(SNESGetKSP(snes_, &ksp));
@@ -174,7 +191,19 @@ NewtonSolver::Result NewtonSolver::solve(const StepFields& fields, Vec x, double
   SILT_PETSC(VecCopy(x, start_));
   if (!tolerance_given_)
     SILT_PETSC(SNESSetTolerances(snes_, 1e-10 * scale, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-  const SNESConvergedReason reason = run(snes_, x, result);
+  factors_serve_ = stage_ && stage_->factored() && factor_age_ < longest_factor_age;
+  SNESConvergedReason reason = run(snes_, x, result);
+  if (reason <= 0 && factors_serve_) {
+    stage_->renew();
+    stage_->prepare(fields);
+    factors_serve_ = false;
+    SILT_PETSC(VecCopy(start_, x));
+    reason = run(snes_, x, result);
+  }
+  jacobian_serves_ = !factors_serve_ || (jacobian_serves_ && norms_.size() > 1 && norms_[1] <= kept * norms_[0]);
+  if (!factors_serve_) factor_age_ = 0, fresh_linear_ = result.linear;
+  ++factor_age_;
+  if (result.linear > most_growth * fresh_linear_ + 3) factor_age_ = longest_factor_age;
   if (reason > 0) return result;
   if (rows_ <= direct_rows) {
     if (!direct_) create(direct_.out(), "fluid_direct_", true);

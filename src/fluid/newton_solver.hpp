@@ -14,8 +14,11 @@ namespace silt {
 /// hexahedra, whose rows are long, ILU(0), in large systems followed by a PressureStage; Taylor-Hood MUMPS in the
 /// plane, in space and for large systems FGMRES with an upper Schur complement (selfp), block ILU for the velocity and
 /// BoomerAMG for the pressure. Iterative solvers stop where Newton's method gains no more (Eisenstat & Walker 1996,
-/// their first choice, at most 1e-2) unless
-/// `-fluid_ksp_rtol` or `-fluid_snes_ksp_ew` is given. When Newton fails and the system is small the step is tried once
+/// their first choice, at most 1e-2) unless `-fluid_ksp_rtol` or `-fluid_snes_ksp_ew` is given. Inexact like that,
+/// Newton's method goes on with the Jacobian of its second iteration while that brings the residual down as far as the
+/// linear solve allows (a step of moderate Courant number is nearly linear), unless `-fluid_snes_lag_jacobian` says
+/// when to renew it; and with a PressureStage the factors serve for several steps while the iterations do not grow, and
+/// the Jacobian for the first iteration of the next. When Newton fails and the system is small the step is tried once
 /// more with MUMPS.
 class NewtonSolver {
  public:
@@ -57,7 +60,12 @@ class NewtonSolver {
   SnesHandle snes_, direct_;
   PetscInt rows_ = 0;
   bool tolerance_given_ = false, linear_floor_given_ = false;
-  double linear_tolerance_ = 0;  ///< of linear_answer()
+  bool may_keep_ = false;         ///< the Jacobian may serve for several iterations
+  int factor_age_ = 0;            ///< solves since the factors were made
+  int fresh_linear_ = 0;          ///< linear iterations of the solve that made them
+  bool factors_serve_ = false;    ///< from the last solve for this one
+  bool jacobian_serves_ = false;  ///< too, for the first iteration
+  double linear_tolerance_ = 0;   ///< of linear_answer()
   std::vector<double> norms_;
 };
 

@@ -7,7 +7,8 @@
 namespace silt {
 namespace {
 
-/// The pressure operator is made anew when the rate of the step has changed by this factor.
+/// The pressure operator and the factors are made anew when the rate of the step has changed by this factor, the
+/// factors also when the scale of the continuity rows has.
 constexpr double changed = 1.2;
 /// Largest Courant number for which the lumped inertia stands for the momentum rows.
 constexpr double largest_courant = 20;
@@ -54,7 +55,10 @@ void PressureStage::prepare(const StepFields& fields) {
   const FlowParameters& k = fields.parameters;
   const double rate = k.time_coefficient;
   const double spread = k.viscosity / std::max(k.density, 1e-300) / (size * size);
+  const bool before = active_;
   active_ = rate * largest_courant > speed / size + spread;
+  const bool rescaled = std::max(scale_, k.continuity_scale) > changed * std::min(scale_, k.continuity_scale);
+  if (rescaled || active_ != before) factored_ = false;
   scale_ = k.continuity_scale;
   if (!active_) return;
   if (rate_ == 0 || rate > changed * rate_ || rate_ > changed * rate) assemble(fields, rate);
@@ -109,6 +113,7 @@ void PressureStage::assemble(const StepFields& fields, double rate) {
   srand48(1);  // of the eigenvalue estimates: one set-up must not depend on those before
   SILT_PETSC(KSPSetUp(cycle_));
   rate_ = rate;
+  factored_ = false;
 }
 
 void PressureStage::copy_parts(Mat matrix) {
@@ -140,12 +145,16 @@ PetscErrorCode PressureStage::set_up(PC pc) {
   void* context;
   PetscCall(PCShellGetContext(pc, &context));
   auto& self = *static_cast<PressureStage*>(context);
+  const bool keep = self.keep_ && self.factored_;
+  PetscCall(PCSetReusePreconditioner(self.local_, keep ? PETSC_TRUE : PETSC_FALSE));
+  if (keep) PetscFunctionReturn(0);
   Mat operators, matrix;
   PetscCall(PCGetOperators(pc, &operators, &matrix));
   PetscCall(PCSetOperators(self.local_, operators, matrix));
   PetscCall(PCSetUp(self.local_));
   PetscCall(PCSetUpOnBlocks(self.local_));
   if (self.active_) self.copy_parts(matrix);
+  self.factored_ = true;
   PetscFunctionReturn(0);
 }
 

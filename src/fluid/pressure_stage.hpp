@@ -27,8 +27,14 @@ class PressureStage {
   /// The step whose Jacobian is preconditioned; decides whether the second stage is of use, and renews it when the
   /// step has changed. Collective.
   void prepare(const StepFields& fields);
-  /// The next prepare() makes the pressure operator anew, whatever it was made from.
-  void renew() { rate_ = 0; }
+  /// The next prepare() makes the pressure operator anew, whatever it was made from, and the next Jacobian is factored.
+  void renew() {
+    rate_ = 0;
+    factored_ = false;
+  }
+  /// Whether the factors of an earlier Jacobian, if there are any, serve for the next one too.
+  void keep_factors(bool keep) { keep_ = keep; }
+  bool factored() const { return factored_; }
 
  private:
   static PetscErrorCode set_up(PC pc);
@@ -57,7 +63,7 @@ class PressureStage {
   std::vector<int> row_start_, column_;                  ///< pattern of the Jacobian's blocks, on one rank
   std::vector<float> pressure_rows_, pressure_columns_;  ///< [blocks][dim + 1], [blocks][dim]
   double rate_ = 0, scale_ = 1;
-  bool active_ = false;
+  bool active_ = false, keep_ = false, factored_ = false;
 };
 
 }  // namespace silt

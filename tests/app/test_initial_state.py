@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # processors: 2
-"""Flows that start from an earlier run on another mesh, from a potential flow and from a Stokes flow."""
+"""Flows that start from an earlier run on another mesh, with their turbulence, from a potential flow and from a Stokes flow."""
 import csv
 import os
 import subprocess
 import sys
 import tempfile
+
+import h5py
 
 SILT = os.path.abspath(sys.argv[1])
 CHANNEL = """\
@@ -87,6 +89,76 @@ with tempfile.TemporaryDirectory() as folder:
                 first = list(csv.DictReader(file))[0]
             expect(abs(float(first["fluid_velocity_x"]) - 1) < 5e-3, f"potential, {scheme}: mean velocity {first['fluid_velocity_x']}")
             expect(abs(float(first["fluid_velocity_y"])) < 0.09, f"potential, {scheme}: cross flow {first['fluid_velocity_y']}")
+
+    # Turbulence comes along, also to the other model, and a gas starts from a gas: linear fields arrive exactly.
+    TURBULENT = """\
+mesh: {{type: box, cell: {cell}, lower: [0, 0, 0], upper: [2, 1, 0], cells: {cells}}}
+gravity: [0, 0, 0]
+time: {{end: 1e-6, step: 1e-6}}
+fluid: {{density: 2, viscosity: 0.001, turbulence: {model}, {start}}}
+boundary:
+  x_min: {{type: velocity, velocity: "1, 0, 0", turbulence_energy: 0.01, turbulence_viscosity_ratio: 10}}
+  x_max: {{type: pressure}}
+  y_min: {{type: slip}}
+  y_max: {{type: slip}}
+output: {{directory: {out}, interval: 1e-6}}
+"""
+    GAS = """\
+mesh: {{type: box, cell: {cell}, lower: [0, 0, 0], upper: [2, 1, 0], cells: {cells}}}
+gravity: [0, 0, 0]
+time: {{end: 1e-7, step: 1e-7}}
+fluid: {{type: compressible, viscosity: 2e-5, {start}}}
+boundary:
+  x_min: {{type: slip}}
+  x_max: {{type: slip}}
+  y_min: {{type: slip}}
+  y_max: {{type: slip}}
+output: {{directory: {out}, interval: 1e-7}}
+"""
+
+    def start_case(text, ranks=1, words=(), **values):
+        with open(os.path.join(folder, "case.yaml"), "w") as file:
+            file.write(text.format(**values))
+        command = (["mpiexec", "-n", str(ranks)] if ranks > 1 else []) + [SILT, "case.yaml", *words]
+        return subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    def fields(out):
+        """Fields of the first output by name, and the places of its nodes."""
+        with h5py.File(os.path.join(folder, out, "fluid", "mesh.h5")) as mesh, h5py.File(os.path.join(folder, out, "fluid", "000000.h5")) as data:
+            return {name: data[name][...] for name in data}, mesh["points"][...]
+
+    formula = 'initial_velocity: "1, 0, 0", initial_turbulent_energy: "0.01*(1 + x)", initial_viscosity_ratio: 10'
+    done = start_case(TURBULENT, model="realizable_k_epsilon", cell="quadrilateral", cells="[24, 16]", start=formula, out="turbulent")
+    expect(done.returncode == 0, f"k-epsilon: {done.stdout[-300:]}")
+    from_file = "initial_file: turbulent/fluid/000000.h5"
+    for ranks, model, second, exact in ((1, "realizable_k_epsilon", "turbulent_dissipation", lambda k: 0.09 * k * k * 2 / 0.01), (3, "sst_k_omega", "specific_dissipation", lambda k: k * 2 / 0.01)):
+        done = start_case(TURBULENT, ranks, model=model, cell="triangle", cells="[17, 13]", start=from_file, out="from_" + model)
+        expect(done.returncode == 0, f"{model} from a file: {done.stdout[-300:]}")
+        if done.returncode == 0:
+            found, x = fields("from_" + model)
+            k = 0.01 * (1 + x[:, 0])
+            inside = x[:, 0] > 1e-9  # what enters there is given
+            expect(abs(found["turbulent_energy"] / k - 1)[inside].max() < 1e-9, f"{model}: k differs by {abs(found['turbulent_energy'] / k - 1)[inside].max()}")
+            expect(abs(found[second] / exact(k) - 1)[inside].max() < 2e-3, f"{model}: {second} differs by {abs(found[second] / exact(k) - 1)[inside].max()}")
+    done = start_case(TURBULENT, model="sst_k_omega", cell="triangle", cells="[17, 13]", start=from_file + ", initial_turbulent_energy: 1", out="twice")
+    expect(done.returncode == 2 and "exclude each other" in done.stdout, f"k by formula and file: {done.stdout[-300:]}")
+    laminar = TURBULENT.replace("out/fluid", "out").replace("turbulence: {model}, {start}", "{start}").replace(", turbulence_energy: 0.01, turbulence_viscosity_ratio: 10", "")
+    done = start_case(laminar, cell="quadrilateral", cells="[24, 16]", start='initial_velocity: "1, 0, 0"', out="laminar")
+    expect(done.returncode == 0, f"laminar: {done.stdout[-300:]}")
+    done = start_case(TURBULENT, model="sst_k_omega", cell="triangle", cells="[17, 13]", start="initial_file: laminar/fluid/000000.h5", out="lacks")
+    expect(done.returncode == 2 and "has no turbulence" in done.stdout, f"a file without k: {done.stdout[-300:]}")
+
+    done = start_case(GAS, cell="quadrilateral", cells="[12, 8]", start='initial_velocity: "x*(2 - x)*0, 0, 0", initial_pressure: "1e5*(1 + 0.01*x)", initial_temperature: "300 + 5*y"', out="gas")
+    expect(done.returncode == 0, f"gas: {done.stdout[-300:]}")
+    for ranks in (1, 2):
+        done = start_case(GAS, ranks, cell="triangle", cells="[9, 11]", start="initial_file: gas/fluid/000000.h5", out="gas_on")
+        expect(done.returncode == 0, f"gas from a file: {done.stdout[-300:]}")
+        if done.returncode == 0:
+            found, x = fields("gas_on")
+            expect(abs(found["pressure"] / (1e5 * (1 + 0.01 * x[:, 0])) - 1).max() < 1e-12, "the gas's pressure arrives")
+            expect(abs(found["temperature"] / (300 + 5 * x[:, 1]) - 1).max() < 1e-12, "the gas's temperature arrives")
+    done = start_case(GAS, cell="triangle", cells="[9, 11]", start="initial_file: laminar/fluid/000000.h5", out="gas_off")
+    expect(done.returncode == 2, f"a gas does not start from a liquid: {done.stdout[-300:]}")
 
 print("\n".join(wrong) if wrong else "the starts are what they should be")
 sys.exit(1 if wrong else 0)

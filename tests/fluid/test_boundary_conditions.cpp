@@ -156,3 +156,46 @@ TEST_CASE("A vortex leaving through a pressure boundary does not blow up", "[flu
     CHECK(fastest < 1.5);
   }
 }
+
+TEST_CASE("A closed box refuses what it cannot conserve, and only that", "[boundary][fluid][mpi]") {
+  const std::string scheme = GENERATE("pressure_correction", "monolithic");
+  INFO(scheme);
+  FlowCase leaky({{"mesh_cell", "quadrilateral"},
+                  {"mesh_upper", "1, 1, 0"},
+                  {"mesh_cells", "6, 4"},
+                  {"fluid_scheme", scheme},
+                  {"fluid_density", "1"},
+                  {"fluid_viscosity", "1"},
+                  {"boundary_x_min_type", "velocity"},
+                  {"boundary_x_min_velocity", "1, 0, 0"},
+                  {"boundary_x_max_type", "velocity"},
+                  {"boundary_x_max_velocity", "0.9, 0, 0"},
+                  {"boundary_y_min_type", "slip"},
+                  {"boundary_y_max_type", "slip"}});
+  CHECK_THROWS_WITH(leaky.advance(0.1), Catch::Contains("the flow cannot be conserved"));
+
+  // A box of a micrometre and steps of a nanosecond: the round-off of a void fraction, 1e-13 in a step, is 100 volumes
+  // a second.
+  const double dt = 1e-9;
+  FlowCase small({{"mesh_cell", "quadrilateral"},
+                  {"mesh_upper", "1e-6, 1e-6, 0"},
+                  {"mesh_cells", "6, 4"},
+                  {"fluid_scheme", scheme},
+                  {"fluid_density", "1000"},
+                  {"fluid_viscosity", "0.001"},
+                  {"boundary_x_min_type", "no_slip"},
+                  {"boundary_x_max_type", "no_slip"},
+                  {"boundary_y_min_type", "no_slip"},
+                  {"boundary_y_max_type", "no_slip"}});
+  const auto fill = [&](double lost) {
+    for (int i = 0; i < small.mesh->nodes; ++i) {
+      const double wave = std::cos(M_PI * 1e6 * small.position(i).x());
+      small.fluid->load().void_fraction[i] = 0.9 + 1e-6 * wave;
+      small.fluid->load().void_fraction_rate[i] = (1e-6 * wave - lost) / dt;
+    }
+  };
+  fill(1e-13);
+  CHECK_NOTHROW(small.advance(dt));
+  fill(1e-8);
+  CHECK_THROWS_WITH(small.advance(dt), Catch::Contains("the flow cannot be conserved"));
+}

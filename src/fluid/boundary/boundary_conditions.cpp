@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -259,6 +260,18 @@ void BoundaryConditions::add_flow(double time) {
   MPI_Allreduce(MPI_IN_PLACE, boundary_flow_.data(), static_cast<int>(boundary_flow_.size()), MPI_DOUBLE, MPI_SUM,
                 PETSC_COMM_WORLD);
   throughput_ = mpi_sum(throughput_);
+}
+
+void BoundaryConditions::check_balance(double volume_rate, double dt) const {
+  if (!closed_) return;
+  double flows = 0;
+  for (double flow : boundary_flow_) flows += flow;
+  const double rest = std::abs(flows + volume_rate), round_off = dt > 0 ? 1e-11 * mesh_.volume / dt : 0;
+  if (rest > std::max(0.01 * (throughput_ + std::abs(volume_rate)), round_off))
+    throw RunError(
+        fmt::format("the flow cannot be conserved: the boundaries prescribe an outflow of {:.3g} m3/s in all, the "
+                    "fluid's volume changes by {:.3g} m3/s, and no boundary has type pressure",
+                    flows, volume_rate));
 }
 
 void BoundaryConditions::impose(double* u) const {

@@ -107,6 +107,10 @@ class BoundaryConditions {
   const std::vector<double>& boundary_flow() const { return boundary_flow_; }
   /// m3/s, sum of the prescribed inflow and outflow without their signs, over all ranks.
   double throughput() const { return throughput_; }
+  /// A closed domain whose boundaries let in more than they let out has no solution: throws RunError on all ranks when
+  /// what the last evaluate() prescribes and the fluid's volume, changing by `volume_rate` (m3/s) over a step `dt` (s;
+  /// 0: steady), do not balance within a hundredth and beyond the round-off of a void fraction.
+  void check_balance(double volume_rate, double dt) const;
 
   /// Sets the fixed directions of u [nodes][3] to the prescribed velocity.
   void impose(double* u) const;

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/nodal_matrix.hpp"
+#include "fluid/initial_state.hpp"
 
 namespace silt {
 
@@ -41,7 +42,7 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
           if (options.given(std::string("fluid_") + name))
             throw UserError(fmt::format("-fluid_{} has no meaning with -fluid_type compressible", name));
         for (const char* name : {"initial_pressure", "initial_temperature"})
-          if (!options.given(std::string("fluid_") + name))
+          if (!options.given(std::string("fluid_") + name) && !options.given("fluid_initial_file"))
             throw UserError(fmt::format("-fluid_{} is missing: compressible flow needs it", name));
         if (fluid.model != "a") throw UserError("-fluid_model b is not available with -fluid_type compressible");
         if (fluid.hydrostatic)
@@ -80,17 +81,22 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
   velocity_.assign(3 * n, 0.0), velocity_change_ = pressure_gradient_ = velocity_;
   pressure_.assign(n, 0.0), temperature_change_ = mach_ = density_field_ = temperature_ = pressure_;
   viscosity_field_ = sound_ = pressure_;
-  bool bad = false;
   for (size_t i = 0; i < n; ++i) {
     const Vec3 x = vec3(&mesh.node_coordinates[3 * i]);
     vec3(&velocity_[3 * i]) = velocity(x, 0);
-    if (mesh.dimension == 2) velocity_[3 * i + 2] = 0;
     pressure_[i] = pressure(x, 0);
     temperature_[i] = temperature(x, 0);
+  }
+  const InitialState start = initial_state(mesh, options, boundaries_, mesh.node_coordinates, true, true);
+  if (!start.velocity.empty()) velocity_ = start.velocity;
+  if (!start.pressure.empty()) pressure_ = start.pressure;
+  if (!start.temperature.empty()) temperature_ = start.temperature;
+  bool bad = false;
+  for (size_t i = 0; i < n; ++i) {
+    if (mesh.dimension == 2) velocity_[3 * i + 2] = 0;
     bad = bad || !(pressure_[i] > 0) || !(temperature_[i] > 0);
   }
-  if (mpi_any(bad))
-    throw UserError("-fluid_initial_pressure and -fluid_initial_temperature must be above 0 everywhere");
+  if (mpi_any(bad)) throw UserError("the initial pressure and temperature of a gas must be above 0 everywhere");
   choose_units(gravity);
   past_.assign(2 * n, 0.0);
   rate_.assign(n * m, 0.0);

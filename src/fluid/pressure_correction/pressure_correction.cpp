@@ -356,7 +356,7 @@ void PressureCorrection::solve(const Past& before, FluidStep& step, std::vector<
   const double volume_rate = mesh_.dot(mass_.data(), load_.void_fraction_rate.data(), 1);
   if (boundaries_.closed()) {
     // Quadrature of an inflow that balances exactly leaves a small rest, spread evenly.
-    check_balance(flows, volume_rate);
+    boundaries_.check_balance(volume_rate, bdf_dt_);
     const double rest = (flows + volume_rate) / mesh_.volume;
     for (int i = 0; i < n; ++i) right[i] += mass_[i] * rest;
   }

@@ -105,7 +105,6 @@ class PressureCorrection : public Fluid {
   /// N s, what the step lent to particles that follow, dt int s grad p. Collective.
   Vec3 lent_impulse() const;
   void accept(const Past& before, double dt, std::vector<double>& phi, const std::vector<double>& divergence);
-  void check_balance(double flows, double volume_rate) const;
   /// Outflow less what alpha makes room for, relative to VolumeScale; `prescribed` at the boundaries with a given
   /// flow.
   double volume_imbalance(double prescribed, double inflow, double volume_rate);

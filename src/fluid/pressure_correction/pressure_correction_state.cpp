@@ -43,15 +43,6 @@ PressureCorrection::Past PressureCorrection::past() const {
   return {static_cast<int>(values[0]), values[1], values[2], values[3]};
 }
 
-void PressureCorrection::check_balance(double flows, double volume_rate) const {
-  const double scale = boundaries_.throughput() + std::abs(volume_rate);
-  if (std::abs(flows + volume_rate) > 0.01 * scale && scale > 1e-9 * mesh_.volume)
-    throw RunError(
-        fmt::format("the flow cannot be conserved: the boundaries prescribe an outflow of {:.3g} m3/s in all, the "
-                    "fluid's volume changes by {:.3g} m3/s, and no boundary has type pressure",
-                    flows, volume_rate));
-}
-
 void PressureCorrection::set_static_pressure(const Past& before) {
   set_momentum_terms();
   if (!porous_ && !has_body_force_) return;

@@ -32,10 +32,7 @@ TwoEquation<Model>::TwoEquation(const Mesh& mesh, Options& options, const Turbul
       axisymmetric_(axisymmetric),
       k_transport_(rule_, graph_, "fluid_turbulent_energy_"),
       second_transport_(rule_, graph_, "fluid_turbulent_dissipation_"),
-      initial_energy_("fluid_initial_turbulent_energy", read.initial_energy),
-      initial_ratio_("fluid_initial_viscosity_ratio", read.initial_viscosity_ratio) {
-  if (!options.given("fluid_initial_turbulent_energy"))
-    throw UserError("-fluid_initial_turbulent_energy is missing: -fluid_turbulence " + read.turbulence + " needs it");
+      initial_(mesh, options, read, epsilon) {
   for (auto* field : {&k_, &old_k_, &second_, &old_second_, &dissipation_, &eddy_viscosity_})
     field->assign(mesh.nodes, 0.0);
   cell_eddy_viscosity_.assign(mesh.cells, 0.0);
@@ -52,11 +49,15 @@ double TwoEquation<Model>::inflow_second(int boundary, const Flow& flow, int nod
 
 template <class Model>
 void TwoEquation<Model>::start(const Flow& flow) {
-  for (int i = 0; i < mesh_.nodes; ++i) {
-    const Vec3 x = vec3(&mesh_.node_coordinates[3 * static_cast<std::size_t>(i)]);
-    k_[i] = std::max(0.0, initial_energy_(x, 0));
-    const double ratio = std::max(initial_ratio_(x, 0), 1e-10);
-    second_[i] = Model::second_of_viscosity(flow.density[i], k_[i], ratio * flow.viscosity[i]);
+  k_ = initial_.k(), second_ = initial_.second();
+  if (!initial_.from_file()) {
+    k_.resize(mesh_.nodes), second_.resize(mesh_.nodes);
+    for (int i = 0; i < mesh_.nodes; ++i) {
+      const Vec3 x = vec3(&mesh_.node_coordinates[3 * static_cast<std::size_t>(i)]);
+      k_[i] = initial_.energy(x);
+      const double mu_t = initial_.viscosity_ratio(x) * flow.viscosity[i];
+      second_[i] = Model::second_of_viscosity(flow.density[i], k_[i], mu_t);
+    }
   }
   State state{k_, second_, eddy_viscosity_, {}, {}};
   for (int i = 0; i < mesh_.nodes; ++i)  // so that no scheme starts from a wall with the turbulence of the core

@@ -1,5 +1,6 @@
 #pragma once
 #include "fluid/turbulence/closure.hpp"
+#include "fluid/turbulence/initial_turbulence.hpp"
 #include "fluid/turbulence/positive_transport.hpp"
 #include "fluid/turbulence/turbulence.hpp"
 #include "fluid/turbulence/turbulence_inflow.hpp"
@@ -66,7 +67,7 @@ class TwoEquation : public Turbulence {
   WallLayer layer_;
   bool resolved_, axisymmetric_;
   PositiveTransport k_transport_, second_transport_;
-  Expression initial_energy_, initial_ratio_;
+  InitialTurbulence initial_;
 
   std::vector<double> k_, old_k_, second_, old_second_, dissipation_, exchange_;
   State next_;
