@@ -10,7 +10,7 @@ import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PAGE = os.path.join(ROOT, "docs", "verification.md")
-FOLDERS = ("inputs", "inputs/verification", "inputs/fluid", "inputs/models", "tests/cases")
+FOLDERS = ("inputs", "inputs/verification", "inputs/fluid", "inputs/models", "inputs/particles", "tests/cases")
 # case quantity expected computed error tolerance PASS|FAIL
 FIGURE = re.compile(r"^(\S+) (\S+) (\S+) (\S+) (\S+) (\S+) (PASS|FAIL)\s*$", re.M)
 HEAD = """# Verification

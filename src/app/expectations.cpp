@@ -68,7 +68,7 @@ void ExpectationOptions::options(OptionGroup& option) {
   option(
       "quantity", quantity,
       "what is compared: a column of diagnostics.csv, <boundary>.<column>, <probe>.<column>, particle.<id>.<column>, "
-      "<line>.<column> or <profile>.<column>");
+      "particles.<statistic>, <line>.<column> or <profile>.<column>");
   option("less", less, "a quantity through time that is subtracted from the first before anything else");
   option("value", value, "", "figure expected, in the quantity's unit times the factor");
   option("values", values, "", "figures expected at the points of a line or profile");

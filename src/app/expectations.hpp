@@ -28,7 +28,8 @@ struct ExpectationOptions {
 };
 
 /// The figures a case carries. A quantity is a column of diagnostics.csv, `<boundary>.<column>` of boundaries.csv,
-/// `<probe>.<column>`, or, along a line or profile, `<line>.<column>` and `<profile>.<column>`.
+/// `<probe>.<column>`, `particle.<id>.<column>`, `particles.<statistic>`, or, along a line or profile,
+/// `<line>.<column>` and `<profile>.<column>`.
 ///
 /// Through time: the value `at` a time (interpolated), or a `statistic` over a `window`: mean, minimum, maximum,
 /// amplitude (half of maximum less minimum), frequency (upward crossings of the mean, Hz), rate (change per second

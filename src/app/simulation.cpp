@@ -112,9 +112,12 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
   for (const auto& column : profiles_->columns()) along_lines.push_back(column);
   std::vector<std::string> asked;
   for (const auto& name : options.names("expect", Options::declared<ExpectationOptions>()))
-    if (const auto quantity = options.find("expect_" + name + "_quantity")) asked.push_back(*quantity);
+    for (const char* which : {"_quantity", "_less"})
+      if (const auto quantity = options.find("expect_" + name + which)) asked.push_back(*quantity);
   tracked_ = std::make_unique<TrackedParticles>(grains ? asked : std::vector<std::string>{});
   for (const auto& name : tracked_->names()) through_time.push_back(name);
+  statistics_ = std::make_unique<ParticleStatistics>(asked, particles_.get());
+  for (const auto& name : statistics_->names()) through_time.push_back(name);
   expectations_ = std::make_unique<Expectations>(options, through_time, along_lines);
   progress_ = std::make_unique<Progress>(options);
   if (time_options_.least_step == 0) time_options_.least_step = 1e-3 * time_options_.step;
@@ -361,6 +364,7 @@ void Simulation::report() {
   walls_->sample(now_, quantities);
   energy_->sample(now_, quantities);
   tracked_->sample(now_, quantities);
+  statistics_->sample(now_, quantities);
   expectations_->sample(now_.time, quantities);
   if (output_->due(now_.time) || now_.time >= time_options_.end * (1 - 1e-12)) {
     output_->write(now_);

@@ -15,6 +15,7 @@
 #include "app/expectations.hpp"
 #include "app/moment.hpp"
 #include "app/output.hpp"
+#include "app/particle_statistics.hpp"
 #include "app/probes.hpp"
 #include "app/profiles.hpp"
 #include "app/progress.hpp"
@@ -105,6 +106,7 @@ class Simulation {
   std::unique_ptr<EnergyTable> energy_;
   std::unique_ptr<Expectations> expectations_;
   std::unique_ptr<TrackedParticles> tracked_;
+  std::unique_ptr<ParticleStatistics> statistics_;
   std::unique_ptr<Progress> progress_;
 
   std::unique_ptr<Checkpoint> checkpoint_;
