@@ -72,7 +72,8 @@ def main():
             if name == "grains":
                 check(f"{label}: the fullest rank", share[1] < 1 + 0.6 * (share[0] - 1), f"{share[0]:.3g} -> {share[1]:.3g} of the mean")
             far = np.abs(after["position"] - plain["position"]).max()
-            check(f"{label}: same particles at the same places", np.array_equal(after["id"], plain["id"]) and far < 1e-6 * 0.096, f"{far:.2g} m")
+            # Round-off, grown by collisions; beside a fluid the solvers' preconditioner differs with the ranks.
+            check(f"{label}: same particles at the same places", np.array_equal(after["id"], plain["id"]) and far < (1e-9 if name == "grains" else 1e-7) * 0.096, f"{far:.2g} m")
             check(f"{label}: ledger", after["residual"] < 1e-10 and after["times"] == before["times"], f"{after['residual']:.2g}")
             check(f"{label}: outputs", after["outputs"] == before["outputs"] and not after["left"])
             check(f"{label}: what was expected counts the whole run", "highest" in said and "PASS" in said)
