@@ -53,7 +53,11 @@ double share_in_box(const Vec3& centre, double radius, const Vec3& lower, const 
 void ProfileOptions::options(OptionGroup& option) {
   option("from", from, "m", "centre of the first box over which particles are averaged");
   option("to", to, "m", "centre of the last box");
-  option("size", size, "m", "extent of every box");
+  option("size", size, "m",
+         "extent of every box; of a ring the height along its axis and the thickness in the two other directions");
+  option("axis", axis, {"none", "x", "y", "z"},
+         "none: boxes; else rings about this axis, each at the distance from it that the box's centre would have");
+  option("centre", centre, "m", "a point of the axis of rings");
   option("points", points, "-", "number of boxes", at_least(1));
   option("start", start, "s", "time from which the average is taken", non_negative);
 }
@@ -65,7 +69,11 @@ Profiles::Profiles(const Mesh& mesh, Options& options, bool with_particles) {
     if (!with_particles) throw UserError("-profile_... averages particles, and the case has none (-insertion_...)");
     if (!(profile.size.head(mesh.dimension).minCoeff() > 0))
       throw UserError(fmt::format("-profile_{}_size must be given: three positive lengths in m", name));
-    Item item{name, profile.start, {}, {}, 0, {}};
+    Item item{name, profile.start, static_cast<int>(std::string("xyz").find(profile.axis)), profile.centre, {}, {}, 0,
+              {}};
+    if (profile.axis == "none") item.axis = -1;
+    if (item.axis >= 0 && mesh.dimension == 2)
+      throw UserError(fmt::format("-profile_{}_axis: rings need a mesh in three dimensions", name));
     for (int k = 0; k < profile.points; ++k) {
       Box box;
       box.centre = profile.from;
@@ -80,11 +88,34 @@ Profiles::Profiles(const Mesh& mesh, Options& options, bool with_particles) {
       if (!((box.upper - box.lower).minCoeff() > 0))
         throw UserError(fmt::format("-profile_{}: the box at ({:g}, {:g}, {:g}) lies outside the mesh", name,
                                     box.centre[0], box.centre[1], box.centre[2]));
+      if (item.axis >= 0) make_ring(mesh, profile, item, box);
       item.boxes.push_back(box);
     }
     item.sums.assign(width * item.boxes.size(), 0.0);
     items_.push_back(std::move(item));
   }
+}
+
+/// A ring that is as high as the box, as far from the axis as the box's centre.
+void Profiles::make_ring(const Mesh& mesh, const ProfileOptions& profile, const Item& item, Box& box) {
+  const int a = item.axis, b = (a + 1) % 3, c = (a + 2) % 3;
+  const double radius = std::hypot(box.centre[b] - item.origin[b], box.centre[c] - item.origin[c]);
+  if (profile.size[b] != profile.size[c])
+    throw UserError(
+        fmt::format("-profile_{0}_size: the thickness of rings about {1} is given twice, as {2:g} and {3:g}", item.name,
+                    "xyz"[a], profile.size[b], profile.size[c]));
+  const double half = 0.5 * profile.size[b];
+  box.ring = {std::max(0.0, radius - half), radius + half,
+              std::max(box.centre[a] - 0.5 * profile.size[a], mesh.lower[a]),
+              std::min(box.centre[a] + 0.5 * profile.size[a], mesh.upper[a])};
+  box.volume = box.ring.volume();
+}
+
+double Profiles::share(const Item& item, const Box& box, const Vec3& centre, double radius) {
+  if (item.axis < 0) return share_in_box(centre, radius, box.lower, box.upper);
+  const int a = item.axis, b = (a + 1) % 3, c = (a + 2) % 3;
+  const double distance = std::hypot(centre[b] - item.origin[b], centre[c] - item.origin[c]);
+  return volume_in_ring(distance, centre[a], radius, box.ring) / (4.0 / 3.0 * M_PI * radius * radius * radius);
 }
 
 void Profiles::sample(const Moment& moment) {
@@ -95,9 +126,9 @@ void Profiles::sample(const Moment& moment) {
     for (int i = 0; i < particles.owned(); ++i) {
       const Vec3 x = particles.position(i), v = particles.velocity(i);
       for (size_t b = 0; b < item.boxes.size(); ++b) {
-        const double share = share_in_box(x, particles.radius(i), item.boxes[b].lower, item.boxes[b].upper);
-        if (share <= 0) continue;
-        const double weight = share * particles.volume(i) * moment.dt;
+        const double part = share(item, item.boxes[b], x, particles.radius(i));
+        if (part <= 0) continue;
+        const double weight = part * particles.volume(i) * moment.dt;
         double* sum = &item.sums[width * b];
         sum[0] += weight;
         for (int d = 0; d < 3; ++d) sum[1 + d] += weight * v[d];

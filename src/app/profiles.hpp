@@ -3,25 +3,30 @@
 #include <vector>
 
 #include "app/moment.hpp"
+#include "app/ring_share.hpp"
 #include "base/checkpoint_file.hpp"
 #include "base/mesh.hpp"
 #include "base/output_directory.hpp"
 
 namespace silt {
 
-/// `-profile_<name>_...`: boxes along a line over which the particles are averaged in space and time.
+/// `-profile_<name>_...`: boxes along a line, or rings about an axis, over which the particles are averaged in space
+/// and time.
 struct ProfileOptions {
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero(), size = Vec3::Zero();
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero(), size = Vec3::Zero(), centre = Vec3::Zero();
+  std::string axis = "none";
   int points = 20;
   double start = 0;
   void options(OptionGroup& option);
 };
 
-/// Averages of the particles in boxes, from the spheres themselves: `profile_<name>.csv`, rewritten at every output.
+/// Averages of the particles in boxes or rings, from the spheres themselves: `profile_<name>.csv`, rewritten at every
+/// output.
 ///
 /// The void fraction of a box is 1 - (volume of the spheres inside it)/(volume of the box within the mesh's bounding
-/// box); a sphere that the box cuts counts with the part inside, found by 512 points of equal volume. Velocities are
-/// means by volume over boxes and time.
+/// box); a sphere that the box cuts counts with the part inside, found by 512 points of equal volume. A ring is cut
+/// exactly and taken whole, also where it reaches beyond the mesh across its axis. Velocities are means by volume over
+/// boxes and time.
 class Profiles {
  public:
   Profiles(const Mesh& mesh, Options& options, bool with_particles);
@@ -44,15 +49,20 @@ class Profiles {
   struct Box {
     Vec3 centre, lower, upper;
     double volume;
+    Ring ring;
   };
   struct Item {
     std::string name;
     double start;
+    int axis;  ///< of rings; -1: boxes
+    Vec3 origin;
     std::vector<Box> boxes;
     std::vector<double> sums;   ///< [boxes][4] this rank's int (volume, volume velocity) dt
     double time = 0;            ///< s averaged over
     std::vector<double> means;  ///< [boxes][4] void fraction, velocity
   };
+  static double share(const Item& item, const Box& box, const Vec3& centre, double radius);
+  static void make_ring(const Mesh& mesh, const ProfileOptions& profile, const Item& item, Box& box);
   std::vector<Item> items_;
 };
 

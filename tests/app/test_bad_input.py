@@ -141,6 +141,7 @@ WRONG = [
     ("an output directory of somebody else", {"out/diagnostics.csv": "mine"}, [], ["out", "diagnostics.csv"]),
     ("an earlier run that must stay", {"out/run.yaml": "mine"}, options("-output_overwrite", "no"), ["out", "-output_overwrite"]),
     ("an expectation of an unknown quantity", {}, options("-expect_a_quantity", "bed_hight", "-expect_a_value", "1", "-expect_a_tolerance", "1"), ["bed_hight", "bed_height"]),
+    ("a ring of two thicknesses", {}, options("-profile_a_axis", "z", "-profile_a_from", "0.002,0,0.01", "-profile_a_to", "0.003,0,0.01", "-profile_a_size", "1e-3,2e-3,1e-2"), ["-profile_a_size", "thickness", "about z"]),
     ("an expectation of an unknown statistic of the particles", {}, options("-expect_a_quantity", "particles.diameter_mass_110", "-expect_a_value", "1", "-expect_a_tolerance", "1"), ["diameter_mass_110", "share_<material> of bead"]),
     ("an expectation without a tolerance", {}, options("-expect_a_quantity", "bed_height", "-expect_a_value", "1"), ["-expect_a_tolerance"]),
     ("a probe outside the mesh", {}, options("-probe_a_point", "1,1,1"), ["probe_a"]),

@@ -31,6 +31,23 @@ TEST_CASE("boxes that tile space share every sphere out completely", "[app]") {
   CHECK(sum == Approx(1).epsilon(1e-12));
 }
 
+TEST_CASE("a sphere's part of a ring: whole, cut in height, cut by its radii, drilled through", "[app]") {
+  const double sphere = 4.0 / 3.0 * M_PI;
+  CHECK(volume_in_ring(10, 0, 1, {8, 12, -2, 2}) == Approx(sphere).epsilon(1e-3));
+  CHECK(volume_in_ring(10, 0, 1, {8, 12, 0, 2}) == Approx(sphere / 2).epsilon(1e-3));
+  CHECK(volume_in_ring(10, 0, 1, {8, 12, 0.5, 2}) == Approx(M_PI * 0.25 * 2.5 / 3).epsilon(1e-3));
+  CHECK(volume_in_ring(10, 0, 1, {0, 9, -2, 2}) == 0);
+  CHECK(volume_in_ring(10, 0, 1, {8, 12, 1.5, 2}) == 0);
+  // About an axis far away a ring is a slab: a share of 3/2 w - w^3/2 of the sphere between +-w.
+  CHECK(volume_in_ring(1e5, 0, 1, {1e5 - 0.1, 1e5 + 0.1, -2, 2}) == Approx(sphere * (0.15 - 0.0005)).epsilon(1e-3));
+  // A hole of radius 0.6 through the middle takes all but a ring of height 2 * 0.8: 4/3 pi 0.8^3.
+  CHECK(sphere - volume_in_ring(0, 0, 1, {0, 0.6, -2, 2}) == Approx(sphere * 0.512).epsilon(1e-3));
+  // Rings that fill space share the sphere out completely.
+  double sum = 0;
+  for (int k = 0; k < 20; ++k) sum += volume_in_ring(1.3, 0.2, 1, {0.15 * k, 0.15 * (k + 1), -1, 2});
+  CHECK(sum == Approx(sphere).epsilon(1e-3));
+}
+
 TEST_CASE("a profile outside the mesh or without extent is refused", "[app]") {
   MeshOptions box;
   box.cells = {2, 2, 2};
