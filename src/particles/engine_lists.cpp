@@ -54,7 +54,8 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   const double reach = 2 * largest_radius_ + gap + skin_;
   const CellGrid grid(lower, upper, mesh.lower, periods_, reach, store.owned);
   sort_along(grid, carried);
-  halo_.build(store, periods_, reach);
+  const Bins own(grid, store, 0, store.owned);
+  halo_.build(store, periods_, grid, own, reach, gap + skin_);
   store.reserve(store.all());
   store.place_padding();
   // A pair that has just passed the gap is looked at once more: it gives its liquid back, its force ends within the
@@ -62,7 +63,7 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   const bool once_more = liquid_.active() || laws_.setup().jumping;
   contacts.clear();
   contacts.reserve(contacts_before + contacts_before / 32);
-  find_pairs(grid, store, periods_, {laws_.setup().enter_gap, gap, skin_, once_more ? gap + skin_ : gap}, memory_,
+  find_pairs(grid, own, store, periods_, {laws_.setup().enter_gap, gap, skin_, once_more ? gap + skin_ : gap}, memory_,
              contacts);
   travel_ = path_ = 0;
   steps_since_rebuild_ = 0;

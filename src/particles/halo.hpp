@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "particles/neighbours.hpp"
 #include "particles/store.hpp"
 
 namespace silt {
@@ -13,9 +14,10 @@ class Halo {
  public:
   explicit Halo(MPI_Comm communicator) : communicator_(communicator) {}
 
-  /// Chooses who needs which particle (nearer than `cutoff` to the box around the other rank's particles, across
-  /// periodic sides too) and fetches the ghosts. Collective.
-  void build(Store& store, const Periods& periods, double cutoff);
+  /// Fetches the ghosts: every other rank's particles whose surface, across periodic sides too, is nearer than `gap` to
+  /// that of an owned one, and no others. `own`: bins of the owned particles in the grid; `reach`: at least the
+  /// distance of the centres of any such two. Collective.
+  void build(Store& store, const Periods& periods, const CellGrid& grid, const Bins& own, double reach, double gap);
   /// Refreshes position, velocity, spin and the columns that change in every step of the ghosts. Collective among
   /// neighbours.
   void forward(Store& store);
@@ -26,6 +28,13 @@ class Halo {
 
  private:
   static constexpr int motion_width_ = 9;  ///< doubles of a ghost in forward(), before its columns
+  struct Offer;
+  /// Ranks whose particles may touch this one's, with what this rank would send.
+  std::vector<Offer> offer(const Store& store, const Periods& periods, double reach);
+  /// Has the others take of the offers what they need.
+  void agree(std::vector<Offer>& offers, const Periods& periods, const CellGrid& grid, const Bins& own, double gap);
+  void fetch(Store& store);
+
   MPI_Comm communicator_;
   std::vector<int> send_rank_, send_start_, send_index_;  ///< per neighbour a run of send_index_
   std::vector<int> receive_rank_, receive_start_;

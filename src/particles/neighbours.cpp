@@ -79,31 +79,26 @@ std::vector<int> order_along(const CellGrid& grid, const Store& store) {
   return order;
 }
 
-namespace {
-
-/// Positions sorted by cell, for the search.
-struct Bins {
-  std::vector<int> start, index;
-  std::vector<double> x, y, z, r;
-  Bins(const CellGrid& grid, const Store& store, int first, int last) {
-    const int n = last - first;
-    start.assign(grid.cells() + 1, 0);
-    std::vector<int> cell(n);
-    for (int k = 0; k < n; ++k) {
-      cell[k] = grid.cell_of(store.motion[first + k].position);
-      ++start[cell[k] + 1];
-    }
-    for (int c = 0; c < grid.cells(); ++c) start[c + 1] += start[c];
-    index.resize(n), x.resize(n), y.resize(n), z.resize(n), r.resize(n);
-    std::vector<int> at(start.begin(), start.end() - 1);
-    for (int k = 0; k < n; ++k) {
-      const int s = at[cell[k]]++;  // == k where they are sorted along the cells
-      const Motion& motion = store.motion[first + k];
-      index[s] = first + k;
-      x[s] = motion.position[0], y[s] = motion.position[1], z[s] = motion.position[2], r[s] = motion.radius;
-    }
+Bins::Bins(const CellGrid& grid, const Store& store, int first, int last) {
+  const int n = last - first;
+  start.assign(grid.cells() + 1, 0);
+  std::vector<int> cell(n);
+  for (int k = 0; k < n; ++k) {
+    cell[k] = grid.cell_of(store.motion[first + k].position);
+    ++start[cell[k] + 1];
   }
-};
+  for (int c = 0; c < grid.cells(); ++c) start[c + 1] += start[c];
+  index.resize(n), x.resize(n), y.resize(n), z.resize(n), r.resize(n);
+  std::vector<int> at(start.begin(), start.end() - 1);
+  for (int k = 0; k < n; ++k) {
+    const int s = at[cell[k]]++;  // == k where they are sorted along the cells
+    const Motion& motion = store.motion[first + k];
+    index[s] = first + k;
+    x[s] = motion.position[0], y[s] = motion.position[1], z[s] = motion.position[2], r[s] = motion.radius;
+  }
+}
+
+namespace {
 
 inline double image(double distance, double length, double inverse) {
   // Adding and taking away 1.5 * 2^52 rounds to the nearest whole number without a call.
@@ -113,11 +108,26 @@ inline double image(double distance, double length, double inverse) {
 
 }  // namespace
 
-void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, const PairReach& pair_reach,
-                const ContactMemory& memory, ContactLists& lists) {
+bool any_within(const CellGrid& grid, const Bins& bins, const Periods& periods, const double* x, double radius,
+                double gap) {
+  CellGrid::Run run[27];
+  const int runs = grid.neighbours(grid.cell_of(x), run);
+  for (int q = 0; q < runs; ++q)
+    for (int k = bins.start[run[q].first]; k < bins.start[run[q].last + 1]; ++k) {
+      const double dx = image(x[0] - bins.x[k], periods.length[0], periods.inverse[0]);
+      const double dy = image(x[1] - bins.y[k], periods.length[1], periods.inverse[1]);
+      const double dz = image(x[2] - bins.z[k], periods.length[2], periods.inverse[2]);
+      const double cut = bins.r[k] + gap + radius;
+      if (dx * dx + dy * dy + dz * dz < cut * cut) return true;
+    }
+  return false;
+}
+
+void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const Periods& periods,
+                const PairReach& pair_reach, const ContactMemory& memory, ContactLists& lists) {
   const double memory_gap = pair_reach.memory_gap, enter_gap = pair_reach.enter_gap, skin = pair_reach.skin;
   const double reach = pair_reach.leave_gap + skin;
-  const Bins own(grid, store, 0, store.owned), ghosts(grid, store, store.owned, store.all());
+  const Bins ghosts(grid, store, store.owned, store.all());
   std::vector<int> found(64);
   std::vector<double> squares(64);
   const auto remember = [&](int a, int b, double square) {

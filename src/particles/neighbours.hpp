@@ -44,6 +44,18 @@ class CellGrid {
   double lower_[3], inverse_[3];
 };
 
+/// Positions and radii of a range of particles, sorted by the cells of a grid, for searches.
+struct Bins {
+  std::vector<int> start;  ///< [cells + 1]
+  std::vector<int> index;  ///< the particle
+  std::vector<double> x, y, z, r;
+  Bins(const CellGrid& grid, const Store& store, int first, int last);
+};
+
+/// Whether one of the bins' particles has its surface nearer than `gap` to that of a sphere at x (3 doubles).
+bool any_within(const CellGrid& grid, const Bins& bins, const Periods& periods, const double* x, double radius,
+                double gap);
+
 /// Sorts the owned particles along the cells of a grid (locality) and returns the order for Store::reorder.
 std::vector<int> order_along(const CellGrid& grid, const Store& store);
 
@@ -54,8 +66,8 @@ struct PairReach {
 };
 
 /// Fills the lists, which are empty, with all pairs of an owned particle and a particle of higher local index (owned or
-/// ghost) nearer than leave_gap + skin. Requires owned particles sorted along the grid.
-void find_pairs(const CellGrid& grid, const Store& store, const Periods& periods, const PairReach& pair_reach,
-                const ContactMemory& memory, ContactLists& lists);
+/// ghost) nearer than leave_gap + skin. Requires owned particles sorted along the grid; `own`: their bins.
+void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const Periods& periods,
+                const PairReach& pair_reach, const ContactMemory& memory, ContactLists& lists);
 
 }  // namespace silt
