@@ -33,7 +33,11 @@ void ContactLists::clear() {
   contacts_ = candidates_ = due_count_ = 0;
   open_page_ = 0;
   now_ = 0;
-  for (auto& page : page_) page = {};
+  // The next lists will be about as long, so that they need not grow.
+  for (int k = 0; k < pages; ++k) {
+    page_[k].clear();
+    page_[k].reserve(filed_[k] + filed_[k] / 16);
+  }
 }
 
 void ContactLists::gather(const Store& store, ContactMemory& memory) const {
@@ -106,23 +110,12 @@ void ContactLists::gather_once(const Store& store, const std::vector<int>& new_p
   rows.start[0] = 0;
 }
 
-void ContactLists::file(int i, int j, double due) {
-  const auto page = static_cast<long long>(due);
-  if (page <= open_page_) return add_due(i, j);
-  page_[std::min(page, open_page_ + pages - 1) % pages].push_back({i, j});
-}
-
 void ContactLists::add_due(int i, int j) {
   const auto needed = static_cast<std::size_t>(due_count_) + 2 * pad_to;
   due_i_.reserve(needed);
   due_j_.reserve(needed);
   due_i_[due_count_] = i;
   due_j_[due_count_++] = j;
-}
-
-void ContactLists::add_candidate(int i, int j, double gap) {
-  ++candidates_;
-  file(i, j, std::max(gap, 0.0) * pages_a_skin);
 }
 
 void ContactLists::add_contact(int i, int j, const double* history, std::size_t history_step) {
@@ -144,8 +137,10 @@ void ContactLists::pad_contacts() {
 
 void ContactLists::pad(int padding) {
   padding_ = padding;
-  for (auto& page : page_)
-    if (page.capacity() > page.size() + page.size() / 8) page.shrink_to_fit();
+  for (int k = 0; k < pages; ++k) {
+    filed_[k] = page_[k].size();
+    if (page_[k].capacity() > filed_[k] + filed_[k] / 8) page_[k].shrink_to_fit();
+  }
   pad_contacts();
 }
 

@@ -58,7 +58,10 @@ class ContactLists {
   /// Room for so many contacts, no more.
   void reserve(int contacts);
   /// A new candidate; `gap` is what it lacks to a contact, in skins (below 0: it is one).
-  void add_candidate(int i, int j, double gap);
+  void add_candidate(int i, int j, double gap) {
+    ++candidates_;
+    file(i, j, gap > 0 ? gap * pages_a_skin : 0);
+  }
   /// With the history it had, or null for a new contact.
   void add_contact(int i, int j, const double* history, std::size_t history_step);
 
@@ -87,7 +90,11 @@ class ContactLists {
 
   void make_room(int count);
   void pad_contacts();
-  void file(int i, int j, double due);
+  void file(int i, int j, double due) {
+    const auto page = static_cast<long long>(due);
+    if (page <= open_page_) return add_due(i, j);
+    page_[(page < open_page_ + pages - 1 ? page : open_page_ + pages - 1) % pages].push_back({i, j});
+  }
   void add_due(int i, int j);
 
   int components_, contacts_ = 0, candidates_ = 0, padding_ = 0;
@@ -95,8 +102,9 @@ class ContactLists {
   Aligned<int> contact_i_, contact_j_;
   Aligned<double> history_;  ///< [components][stride]
   std::vector<Pair> page_[pages];
-  long long open_page_ = 0;  ///< all up to this are in the due list
-  double now_ = 0;           ///< in pages
+  std::size_t filed_[pages] = {};  ///< pairs of each page when the lists had been made
+  long long open_page_ = 0;        ///< all up to this are in the due list
+  double now_ = 0;                 ///< in pages
   int due_count_ = 0;
   Aligned<int> due_i_, due_j_;
   Aligned<double> gap_;  ///< m, of those measured at once

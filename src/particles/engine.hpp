@@ -114,7 +114,7 @@ class Engine {
   void collect_fluid();
   void start(double time);
   void rebuild(Aligned<Load>& carried, bool within_step, double h);
-  void sort_along(const CellGrid& grid, Aligned<Load>& carried);
+  CellOrder sort_along(const CellGrid& grid, Aligned<Load>& carried);
   bool out_of_lists();
   void adapt_skin();
   void depart(const std::vector<Gone>& gone, bool within_step, double h);

@@ -19,7 +19,7 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   std::string fast;
   if (within_step)
     for (int p = 0; p < store.owned && fast.empty(); ++p)
-      if (h * vec3(store.motion[p].velocity).norm() > store.motion[p].radius)
+      if (h * h * vec3(store.motion[p].velocity).squaredNorm() > store.motion[p].radius * store.motion[p].radius)
         fast = fmt::format("a particle moves more than its radius in a step of {:g} s (-particles_fast): {}", h,
                            describe(p));
   if (options_.fast == "stop")
@@ -53,8 +53,7 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   const double gap = laws_.setup().leave_gap;
   const double reach = 2 * largest_radius_ + gap + skin_;
   const CellGrid grid(lower, upper, mesh.lower, periods_, reach, store.owned);
-  sort_along(grid, carried);
-  const Bins own(grid, store, 0, store.owned);
+  const Bins own(sort_along(grid, carried), store);
   halo_.build(store, periods_, grid, own, reach, gap + skin_);
   store.reserve(store.all());
   store.place_padding();
@@ -64,7 +63,7 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   contacts.clear();
   contacts.reserve(contacts_before + contacts_before / 32);
   find_pairs(grid, own, store, periods_, {laws_.setup().enter_gap, gap, skin_, once_more ? gap + skin_ : gap}, memory_,
-             contacts);
+             kernels_.near, contacts);
   travel_ = path_ = 0;
   steps_since_rebuild_ = 0;
   contacts.pad(store.padding());
@@ -73,14 +72,15 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   wall_memory_.release();
   detached_ = false;
   walls_.list(store.motion.data(), store.owned, skin_, gap);
-  store.note_origins();
+  store.note_origins(lower, upper);
   if (fluid_ && within_step) prepare_fluid(h);
   sum_up();
 }
 
 /// Brings the owned particles, and what their contacts remember, into the order of the grid's cells.
-void Engine::sort_along(const CellGrid& grid, Aligned<Load>& carried) {
-  const std::vector<int> order = order_along(grid, store);
+CellOrder Engine::sort_along(const CellGrid& grid, Aligned<Load>& carried) {
+  CellOrder sorted = order_along(grid, store);
+  const std::vector<int>& order = sorted.order;
   if (detached_) {
     memory_.rows.reorder(order);
     wall_memory_.reorder(order);
@@ -94,6 +94,7 @@ void Engine::sort_along(const CellGrid& grid, Aligned<Load>& carried) {
   store.ghosts = 0;
   store.id.resize(store.owned);
   store.reorder(order, carried);
+  return sorted;
 }
 
 /// The bound on how far particles have come grows with the fastest of each step; before the lists are made anew, the

@@ -68,33 +68,31 @@ int CellGrid::later_neighbours(int cell, Run* run) const {
   return 5;
 }
 
-std::vector<int> order_along(const CellGrid& grid, const Store& store) {
-  std::vector<int> cell(store.owned), start(grid.cells() + 1, 0), order(store.owned);
+CellOrder order_along(const CellGrid& grid, const Store& store) {
+  CellOrder sorted;
+  std::vector<int> cell(store.owned);
+  std::vector<int>&start = sorted.start, &order = sorted.order;
+  start.assign(grid.cells() + 1, 0);
+  order.resize(store.owned);
   for (int p = 0; p < store.owned; ++p) {
     cell[p] = grid.cell_of(store.motion[p].position);
     ++start[cell[p] + 1];
   }
   for (int c = 0; c < grid.cells(); ++c) start[c + 1] += start[c];
+  // The starts serve as places to write at and are shifted back.
   for (int p = 0; p < store.owned; ++p) order[start[cell[p]]++] = p;
-  return order;
+  for (int c = grid.cells(); c > 0; --c) start[c] = start[c - 1];
+  start[0] = 0;
+  return sorted;
 }
 
-Bins::Bins(const CellGrid& grid, const Store& store, int first, int last) {
-  const int n = last - first;
-  start.assign(grid.cells() + 1, 0);
-  std::vector<int> cell(n);
-  for (int k = 0; k < n; ++k) {
-    cell[k] = grid.cell_of(store.motion[first + k].position);
-    ++start[cell[k] + 1];
-  }
-  for (int c = 0; c < grid.cells(); ++c) start[c + 1] += start[c];
-  index.resize(n), x.resize(n), y.resize(n), z.resize(n), r.resize(n);
-  std::vector<int> at(start.begin(), start.end() - 1);
-  for (int k = 0; k < n; ++k) {
-    const int s = at[cell[k]]++;  // == k where they are sorted along the cells
-    const Motion& motion = store.motion[first + k];
-    index[s] = first + k;
-    x[s] = motion.position[0], y[s] = motion.position[1], z[s] = motion.position[2], r[s] = motion.radius;
+Bins::Bins(CellOrder&& order, const Store& store) : start(std::move(order.start)) {
+  constexpr int widest = 8;  // pack
+  const int n = store.owned;
+  for (auto* values : {&x, &y, &z, &r}) values->resize(n + widest);
+  for (int p = 0; p < n; ++p) {
+    const Motion& motion = store.motion[p];
+    x[p] = motion.position[0], y[p] = motion.position[1], z[p] = motion.position[2], r[p] = motion.radius;
   }
 }
 
@@ -124,83 +122,66 @@ bool any_within(const CellGrid& grid, const Bins& bins, const Periods& periods, 
 }
 
 void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const Periods& periods,
-                const PairReach& pair_reach, const ContactMemory& memory, ContactLists& lists) {
-  const double memory_gap = pair_reach.memory_gap, enter_gap = pair_reach.enter_gap, skin = pair_reach.skin;
-  const double reach = pair_reach.leave_gap + skin;
-  const Bins ghosts(grid, store, store.owned, store.all());
-  std::vector<int> found(64);
-  std::vector<double> squares(64);
-  const auto remember = [&](int a, int b, double square) {
+                const PairReach& pair_reach, const ContactMemory& memory, void (*near)(NearSearch&),
+                ContactLists& lists) {
+  const double per_skin = 1 / pair_reach.skin;
+  const auto remember = [&](int a, int b, double gap) {
     const std::int64_t id_a = store.id[a], id_b = store.id[b];
     const int i = id_a < id_b ? a : b, j = id_a < id_b ? b : a;
-    const double touch = store.motion[a].radius + store.motion[b].radius + memory_gap;
-    const double* history = nullptr;
-    if (square < touch * touch) {
+    if (gap < pair_reach.memory_gap) {
       const int p = i < store.owned ? i : j;
-      history = memory.find(p, p == i ? store.id[j] : store.id[i]);
-      if (history) {
+      if (const double* history = memory.find(p, store.id[p == i ? j : i]); history) {
         lists.add_contact(i, j, history, 1);
         return;
       }
     }
-    lists.add_candidate(i, j, (std::sqrt(square) - store.motion[a].radius - store.motion[b].radius - enter_gap) / skin);
+    lists.add_candidate(i, j, (gap - pair_reach.enter_gap) * per_skin);
   };
-  bool across = periods.any;  // whether a nearest image may be another than the particle itself
-  const auto search = [&](const Bins& bins, int begin, int end, const Motion& motion, int& n) {
-    if (static_cast<int>(found.size()) < n + end - begin)
-      found.resize(2 * (n + end - begin)), squares.resize(found.size());
-    const double px = motion.position[0], py = motion.position[1], pz = motion.position[2], pr = motion.radius + reach;
-    int* const number = found.data();
-    double* const square_of = squares.data();
-    int m = n;
-    if (across)
-      for (int k = begin; k < end; ++k) {
-        const double dx = image(px - bins.x[k], periods.length[0], periods.inverse[0]);
-        const double dy = image(py - bins.y[k], periods.length[1], periods.inverse[1]);
-        const double dz = image(pz - bins.z[k], periods.length[2], periods.inverse[2]);
-        const double square = dx * dx + dy * dy + dz * dz, cut = pr + bins.r[k];
-        number[m] = k, square_of[m] = square;
-        m += square < cut * cut;
-      }
-    else
-      for (int k = begin; k < end; ++k) {
-        const double dx = px - bins.x[k], dy = py - bins.y[k], dz = pz - bins.z[k];
-        const double square = dx * dx + dy * dy + dz * dz, cut = pr + bins.r[k];
-        number[m] = k, square_of[m] = square;
-        m += square < cut * cut;
-      }
-    n = m;
+  std::vector<int> found;
+  std::vector<double> gaps;
+  NearSearch::Stretch stretch[27];
+  NearSearch search;
+  search.x[0] = own.x.data(), search.x[1] = own.y.data(), search.x[2] = own.z.data(), search.radius = own.r.data();
+  search.stretch = stretch;
+  search.periods = &periods;
+  search.reach = pair_reach.leave_gap + pair_reach.skin;
+  const auto look_at = [&](const CellGrid::Run* run, int runs) {
+    search.stretches = 0;
+    int room = 8;
+    for (int q = 0; q < runs; ++q) {
+      const NearSearch::Stretch one{own.start[run[q].first], own.start[run[q].last + 1]};
+      if (one.begin == one.end) continue;
+      stretch[search.stretches++] = one;
+      room += one.end - one.begin;
+    }
+    if (room > static_cast<int>(found.size())) found.resize(2 * room), gaps.resize(2 * room);
+    search.found = found.data(), search.gap = gaps.data();
   };
+  const auto around = [&](const Motion& motion) {
+    for (int d = 0; d < 3; ++d) search.sphere[d] = motion.position[d];
+    search.sphere[3] = motion.radius;
+    near(search);
+  };
+
   // Owned particles are sorted along the cells, so a pair is found from the one that stands first.
   CellGrid::Run run[27];
-  struct Stretch {
-    int begin, end;
-  } range[27];
   for (int c = 0; c < grid.cells(); ++c) {
     if (own.start[c] == own.start[c + 1]) continue;
-    const bool inner = store.ghosts == 0 && grid.inner(c);
-    const int runs = inner ? grid.later_neighbours(c, run) : grid.neighbours(c, run);
-    across = periods.any && !inner;  // positions are wrapped into the domain
-    int ranges = 0, ghost_ranges = 0;
-    for (int r = 0; r < runs; ++r)
-      if (const Stretch one{own.start[run[r].first], own.start[run[r].last + 1]}; one.begin < one.end)
-        range[ranges++] = one;
+    const bool inner = grid.inner(c);
+    look_at(run, inner ? grid.later_neighbours(c, run) : grid.neighbours(c, run));
+    search.across = periods.any && !inner;  // positions are wrapped into the domain
     for (int s = own.start[c]; s < own.start[c + 1]; ++s) {
-      int n = 0;
-      for (int r = 0; r < ranges; ++r)
-        if (const int begin = std::max(range[r].begin, s + 1); begin < range[r].end)
-          search(own, begin, range[r].end, store.motion[s], n);
-      for (int k = 0; k < n; ++k) remember(s, found[k], squares[k]);
+      search.after = s;
+      around(store.motion[s]);
+      for (int k = 0; k < search.count; ++k) remember(s, found[k], gaps[k]);
     }
-    if (store.ghosts == 0) continue;
-    for (int r = 0; r < runs; ++r)
-      if (const Stretch one{ghosts.start[run[r].first], ghosts.start[run[r].last + 1]}; one.begin < one.end)
-        range[ghost_ranges++] = one;
-    for (int s = own.start[c]; ghost_ranges > 0 && s < own.start[c + 1]; ++s) {
-      int n = 0;
-      for (int r = 0; r < ghost_ranges; ++r) search(ghosts, range[r].begin, range[r].end, store.motion[s], n);
-      for (int k = 0; k < n; ++k) remember(s, ghosts.index[found[k]], squares[k]);
-    }
+  }
+  search.after = -1;
+  search.across = periods.any;
+  for (int g = store.owned; g < store.all(); ++g) {
+    look_at(run, grid.neighbours(grid.cell_of(store.motion[g].position), run));
+    around(store.motion[g]);
+    for (int k = 0; k < search.count; ++k) remember(found[k], g, gaps[k]);
   }
 }
 

@@ -44,20 +44,24 @@ class CellGrid {
   double lower_[3], inverse_[3];
 };
 
-/// Positions and radii of a range of particles, sorted by the cells of a grid, for searches.
+/// The owned particles in the order of the cells of a grid.
+struct CellOrder {
+  std::vector<int> order;  ///< for Store::reorder
+  std::vector<int> start;  ///< [cells + 1] where each cell begins in it
+};
+CellOrder order_along(const CellGrid& grid, const Store& store);
+
+/// Positions and radii of the owned particles, sorted along the cells of a grid, for searches.
 struct Bins {
-  std::vector<int> start;  ///< [cells + 1]
-  std::vector<int> index;  ///< the particle
-  std::vector<double> x, y, z, r;
-  Bins(const CellGrid& grid, const Store& store, int first, int last);
+  std::vector<int> start;          ///< [cells + 1]
+  std::vector<double> x, y, z, r;  ///< and a few more entries, for whole packs
+  /// The particles must have been brought into the order.
+  Bins(CellOrder&& order, const Store& store);
 };
 
 /// Whether one of the bins' particles has its surface nearer than `gap` to that of a sphere at x (3 doubles).
 bool any_within(const CellGrid& grid, const Bins& bins, const Periods& periods, const double* x, double radius,
                 double gap);
-
-/// Sorts the owned particles along the cells of a grid (locality) and returns the order for Store::reorder.
-std::vector<int> order_along(const CellGrid& grid, const Store& store);
 
 /// Gaps between surfaces (m): at which a pair becomes a contact and ceases to be one, to which pairs are listed beyond
 /// that, and below which a pair with a history still is a contact.
@@ -66,8 +70,9 @@ struct PairReach {
 };
 
 /// Fills the lists, which are empty, with all pairs of an owned particle and a particle of higher local index (owned or
-/// ghost) nearer than leave_gap + skin. Requires owned particles sorted along the grid; `own`: their bins.
+/// ghost) nearer than leave_gap + skin. `own`: the bins of the owned particles; `near`: one of the Kernels.
 void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const Periods& periods,
-                const PairReach& pair_reach, const ContactMemory& memory, ContactLists& lists);
+                const PairReach& pair_reach, const ContactMemory& memory, void (*near)(NearSearch&),
+                ContactLists& lists);
 
 }  // namespace silt

@@ -30,17 +30,9 @@ void Store::place_padding() {
   }
 }
 
-void Store::note_origins() {
-  double extent = 0;
-  for (int d = 0; d < 3; ++d) {
-    double lower = owned > 0 ? motion[0].position[d] : 0, upper = lower;
-    for (int p = 1; p < owned; ++p) {
-      lower = std::min(lower, motion[p].position[d]);
-      upper = std::max(upper, motion[p].position[d]);
-    }
-    corner_[d] = lower;
-    extent = std::max(extent, upper - lower);
-  }
+void Store::note_origins(const Vec3& lower, const Vec3& upper) {
+  for (int d = 0; d < 3; ++d) corner_[d] = lower[d];
+  const double extent = (upper - lower).maxCoeff();
   rounding_ = 2 * extent * std::numeric_limits<float>::epsilon();
   origin_.resize(3 * static_cast<std::size_t>(owned));
   for (int p = 0; p < owned; ++p)

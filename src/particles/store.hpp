@@ -38,8 +38,8 @@ struct Store {
     acted_on = true;
     action.resize(owned);
   }
-  /// Remembers where the particles are, for way().
-  void note_origins();
+  /// Remembers where the particles are, all between `lower` and `upper`, for way().
+  void note_origins(const Vec3& lower, const Vec3& upper);
   /// An upper bound of the distance from there, not far above it. m
   double way(int p) const {
     double square = 0;

@@ -76,6 +76,25 @@ struct CandidateSweep {
   double* gap = nullptr;  ///< out: m, what each pair lacks to a contact, negative where it is one; padded as the pairs
 };
 
+/// Which of many spheres are near one.
+struct NearSearch {
+  struct Stretch {
+    int begin, end;
+  };
+  const double* x[3] = {};         ///< coordinates of the many; seven beyond the last may be read
+  const double* radius = nullptr;  ///< as x
+  const Stretch* stretch = nullptr;
+  int stretches = 0;    ///< those to look at
+  int after = -1;       ///< of them only those with higher numbers
+  bool across = false;  ///< the nearest image may be another than the sphere itself
+  const Periods* periods = nullptr;
+  double sphere[4] = {};  ///< x, y, z, radius of the one
+  double reach = 0;       ///< m, surfaces further apart are not near
+  int* found = nullptr;   ///< out: numbers of those near; room for all looked at and seven
+  double* gap = nullptr;  ///< out: m, between their surfaces
+  int count = 0;          ///< out
+};
+
 /// Contacts with walls: the points the geometry gave, with history as for pairs.
 struct WallSweep {
   const Motion* motion = nullptr;
@@ -142,6 +161,7 @@ struct Kernels {
   void (*candidates)(CandidateSweep&);
   void (*walls)(WallSweep&);
   void (*integrate)(Integration&);
+  void (*near)(NearSearch&);
 };
 
 extern const Kernels plain_kernels, avx2_kernels, avx512_kernels;

@@ -6,15 +6,11 @@
 #include "particles/integration_kernels.hpp"
 #include "particles/law_stages.hpp"
 #include "particles/pack.hpp"
+#include "particles/search_kernels.hpp"
 #include "particles/sweep.hpp"
 
 namespace silt {
 namespace SILT_ISA {
-
-SILT_INLINE void nearest_image(const Periods& periods, Pack* distance) {
-  for (int d = 0; d < 3; ++d)
-    distance[d] = distance[d] - Pack(periods.length[d]) * nearest(distance[d] * Pack(periods.inverse[d]));
-}
 
 /// What the motions of `count` pairs give without a root or a division: the distance (in block.normal), the relative
 /// velocity (block.slip), both radii (block.arm_i, arm_j) and the sum of the inverse masses (block.effective_mass). The

@@ -60,6 +60,7 @@ void compare(const Periods& periods, double gap, Share share) {
     }
     motion.radius = all[k].radius;
     store.id.push_back(static_cast<std::int64_t>(k));
+    store.cell.push_back(0);
   }
   std::set<std::int64_t> wanted;
   for (std::size_t k = 0; k < all.size(); ++k)
@@ -71,7 +72,9 @@ void compare(const Periods& periods, double gap, Share share) {
 
   const double reach = 1 + gap;
   const CellGrid grid(vec3(lower), vec3(upper), Vec3::Zero(), periods, reach, store.owned);
-  const Bins own(grid, store, 0, store.owned);
+  CellOrder sorted = order_along(grid, store);
+  store.reorder(sorted.order, store.present);
+  const Bins own(std::move(sorted), store);
   Halo halo(PETSC_COMM_WORLD);
   halo.build(store, periods, grid, own, reach, gap);
   const std::set<std::int64_t> got(store.id.begin() + store.owned, store.id.end());

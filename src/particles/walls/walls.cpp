@@ -69,6 +69,7 @@ void Walls::list(const Motion* particles, int count, double skin, double gap) {
   if (const double reach = largest + gap + 2 * skin; reach > reach_) localise(reach);
   near_.clear();
   items_.clear();
+  if (local_.shape().faces.empty() && local_.shape().edges.empty() && rigid_.empty()) return;
   for (auto& wall : rigid_) wall.mark();
   for (int i = 0; i < count; ++i) {
     const Vec3 centre = vec3(particles[i].position);
