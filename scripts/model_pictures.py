@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws docs/models/*.png: the laws and fields by `silt -law_table_motion`, the scenes by runs; started by scripts/model_pictures."""
+"""Draws docs/models/*.png: the laws and fields by `silt -law_table_motion`, the others and the scenes by runs; started by scripts/model_pictures."""
 import glob
 import os
 import subprocess
@@ -12,6 +12,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+
+import flow_law_pictures
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 OUT = os.path.join(ROOT, "docs", "models")
@@ -284,10 +286,10 @@ def draw_scenes(silt):
 
 
 def main():
-    silt, wanted = os.path.abspath(sys.argv[1]), sys.argv[2:] or ["laws", "fields", "scenes"]
+    silt, wanted = os.path.abspath(sys.argv[1]), sys.argv[2:] or ["laws", "fields", "flows", "scenes"]
     os.makedirs(OUT, exist_ok=True)
     for word in wanted:
-        {"laws": draw_laws, "fields": draw_fields, "scenes": draw_scenes}[word](silt)
+        {"laws": draw_laws, "fields": draw_fields, "flows": flow_law_pictures.draw, "scenes": draw_scenes}[word](silt)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,8 @@ Flows*, 2nd ed., chapter 7. The first of each list is the default. Overlap x, ap
 checks are made by the tests; `verified by` names cases of `scripts/verify models`, whose figures stand in
 [verification.md](verification.md). The pictures are drawn by `scripts/model_pictures` from the solver's own loops
 (`-law_table_motion`): in and out at constant speed, or to and fro under a constant load; dots in those of fields are the closed form of two bare
-dipoles or charges, from which mutual magnetisation departs.
+dipoles or charges, from which mutual magnetisation departs. In those of flows, heat and polarisation every point is a particle of a run.
+The formula of a model stands here, from its header, and nowhere else.
 """
 
 
@@ -68,15 +69,17 @@ def scenes():
 def page(silt):
     text = declared(silt)
     cases = verifying(text)
-    lines, slot, pictured = [HEAD.rstrip()], "", None
+    lines, slot, pictured, drawn = [HEAD.rstrip()], "", None, set()
     for line in text.splitlines():
         heading = re.match(r"## `-(\w+)_(?:type|\.\.\.)`", line)
         row = re.match(r"\| `(\w+)` \|", line)
         if heading:
             slot, pictured = heading[1], os.path.exists(os.path.join(ROOT, "docs", "models", heading[1] + ".png"))
         if line.startswith("| name |"):
-            if pictured:
-                lines += [f"![force of each {slot} law](models/{slot}.png)", ""]
+            if pictured and slot not in drawn:
+                lines += [f"![each {slot} law](models/{slot}.png)", ""]
+                lines += ["![Clausius and Mossotti's factor](models/polarisation.png)", ""] if slot == "electric" else []
+                drawn.add(slot)
             line += " verified by |"
         elif line.startswith("|---"):
             line += "---|"

@@ -153,6 +153,7 @@ void each_switched(Act&& act) {
   const auto all = [&](const char* slot, const auto& models) {
     for (const SwitchedModel& model : models) act(slot, model);
   };
+  all("magnetic", magnetic_models);
   all("electric", electric_models);
   all("brownian", brownian_models);
   all("virtual_mass", virtual_mass_models);
@@ -217,6 +218,7 @@ std::string model_page() {
     text += fmt::format("| `{}` | {} | {} | {} | {} |\n", model.name, cell(note.formula), cell(parameters),
                         cell(source_of(note)), cell(note.check));
   });
+  section.clear();
   each_switched([&](const char* slot, const SwitchedModel& model) {
     if (section != slot) {
       section = slot;

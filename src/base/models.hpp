@@ -11,7 +11,7 @@ namespace silt {
 struct ModelNote {
   const char* equation;  ///< tag of the equation, "" where it has none
   const char* source;    ///< paper
-  const char* formula;   ///< as in the docstring, in one line
+  const char* formula;   ///< in one line; it stands here and nowhere else
   const char* check;     ///< closed form it is tested against
 };
 

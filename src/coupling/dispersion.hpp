@@ -27,16 +27,15 @@ struct NoDispersion {
   void options(OptionGroup&) {}
 };
 
-/// Discrete random walk (Gosman & Ioannides 1983): a particle meets one eddy after the other, each with a fluctuation
-/// u' = (2k/3)^1/2 xi, xi a normal deviate in each direction, for as long as the eddy lives, t_e = 2 C_L k/epsilon, or
-/// until the particle has crossed it, -tau ln(1 - l_e/(tau |u - v|)), l_e = C_mu^(3/4) k^(3/2)/epsilon, tau the
-/// particle's response time. Tracers spread with D = 2/3 C_L k^2/epsilon.
+/// Discrete random walk (Gosman & Ioannides 1983): a particle meets one eddy after the other, each with its own
+/// fluctuation u', for as long as the eddy lives or until the particle has crossed it. tau is the particle's response
+/// time, xi a normal deviate in each direction.
 struct RandomWalkDispersion {
   static constexpr const char* name = "random_walk";
-  static constexpr ModelNote note = {
-      "", "Gosman & Ioannides 1983; Shuen, Solomon, Zhang & Faeth 1985",
-      "u' = (2k/3)^1/2 xi for t_e = 2 C_L k/epsilon, or -tau ln(1 - l_e/(tau |u - v|)), l_e = C_mu^3/4 k^3/2/epsilon",
-      "speed and spread of tracers, D = 2/3 C_L k^2/epsilon; crossing of eddies"};
+  static constexpr ModelNote note = {"", "Gosman & Ioannides 1983; Shuen, Solomon, Zhang & Faeth 1985",
+                                     "u' = (2k/3)^1/2 xi, for min(2 C_L k/epsilon, -tau ln(1 - l_e/(tau |u + u' - "
+                                     "v|))), l_e = C_mu^3/4 k^3/2/epsilon, C_mu = 0.09",
+                                     "speed and spread of tracers, D = 2/3 C_L k^2/epsilon; crossing of eddies"};
   double lifetime = 0.15;
   bool crossing = true;
   int seed = 1;

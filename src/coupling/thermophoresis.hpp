@@ -17,15 +17,15 @@
 
 namespace silt {
 
-/// The gas around a particle, as a thermophoretic force needs it. Each law gives the factor f of F = -f grad T, N m/K.
+/// The gas around a particle, as a thermophoretic force needs it. Each law gives the factor of -grad T, N m/K.
 struct GasAround {
   double diameter, density, viscosity, temperature;  ///< m, kg/m3, Pa s, K
   double mean_free_path;                             ///< m
   double conductivity_ratio;                         ///< k, gas over particle
   double molecule;                                   ///< kg, mass of a gas molecule
-  /// m/s, mean speed of the molecules c = (8 k_B T/(pi m_g))^1/2.
+  /// m/s, mean speed c of the molecules.
   double speed() const { return std::sqrt(8 * boltzmann_constant * temperature / (std::numbers::pi * molecule)); }
-  /// W/(m K), of the molecules' translation: 15/4 k_B mu/m_g.
+  /// W/(m K), l_tr, of the molecules' translation.
   double translational_conductivity() const { return 15.0 / 4 * boltzmann_constant * viscosity / molecule; }
   double knudsen() const { return mean_free_path / diameter; }
 };
@@ -37,22 +37,23 @@ struct NoThermophoresis {
   double factor(const GasAround&) const { return 0; }
 };
 
-/// Particles much smaller than the mean free path (7.81), Waldmann 1959: F = -(8/15) d^2 (l_tr/c) grad T.
+/// Particles much smaller than the mean free path (7.81), Waldmann 1959.
 struct WaldmannThermophoresis {
   static constexpr const char* name = "waldmann";
-  static constexpr ModelNote note = {"(7.81)", "Waldmann 1959", "F = -(8/15) d^2 (l_tr/c) grad T",
-                                     "its value; drift speed"};
+  static constexpr ModelNote note = {
+      "(7.81)", "Waldmann 1959", "F = -(8/15) d^2 (l_tr/c) grad T, c = (8 k_B T/(pi m_g))^1/2, l_tr = 15/4 k_B mu/m_g",
+      "its value; drift speed"};
   void options(OptionGroup&) {}
   double factor(const GasAround& gas) const {
     return 8.0 / 15 * gas.diameter * gas.diameter * gas.translational_conductivity() / gas.speed();
   }
 };
 
-/// Any Knudsen number with a function of the user's choice (7.82): F = -(pi^1/2/8) (l_tr d^2/c) h(Kn, k) grad T, Kn =
-/// lambda/d; h = 64/(15 pi^1/2) is Waldmann's limit.
+/// Any Knudsen number with a function of the user's choice (7.82).
 struct GeneralThermophoresis {
   static constexpr const char* name = "general";
-  static constexpr ModelNote note = {"(7.82)", "", "F = -(pi^1/2/8) (l_tr d^2/c) h(Kn, k) grad T",
+  static constexpr ModelNote note = {"(7.82)", "Waldmann 1959 (limit)",
+                                     "F = -(pi^1/2/8) (l_tr d^2/c) h(Kn, k) grad T, h = 64/(15 pi^1/2) unless given",
                                      "Waldmann's limit; drift speed"};
   std::string h = "64/(15*sqrt(pi))";
   void options(OptionGroup& option) {
@@ -66,14 +67,13 @@ struct GeneralThermophoresis {
   }
 };
 
-/// All Knudsen numbers by interpolation (7.83), Talbot et al. 1980, Kn = lambda/d, C_s 1.17, C_t 2.18, C_m 1.14:
-/// F = -6 pi mu^2 d C_s (k + 2 C_t Kn)/(rho T (1 + 6 C_m Kn)(1 + 2k + 4 C_t Kn)) grad T.
+/// All Knudsen numbers by interpolation (7.83), Talbot et al. 1980.
 struct TalbotThermophoresis {
   static constexpr const char* name = "talbot";
-  static constexpr ModelNote note = {
-      "(7.83)", "Talbot et al. 1980",
-      "F = -6 pi mu^2 d C_s (k + 2 C_t Kn)/(rho T (1 + 6 C_m Kn)(1 + 2k + 4 C_t Kn)) grad T",
-      "force at d 0.1, 1, 10 um; drift speed"};
+  static constexpr ModelNote note = {"(7.83)", "Talbot et al. 1980",
+                                     "F = -6 pi mu^2 d C_s (k + 2 C_t Kn)/(rho T (1 + 6 C_m Kn)(1 + 2k + 4 C_t Kn)) "
+                                     "grad T, Kn = lambda/d, C_s = 1.17, C_t = 2.18, C_m = 1.14",
+                                     "force at d 0.1, 1, 10 um; drift speed"};
   void options(OptionGroup&) {}
   double factor(const GasAround& gas) const {
     constexpr double slip = 1.17, jump = 2.18, momentum = 1.14;

@@ -29,13 +29,13 @@ struct NoModulation {
 };
 
 /// The turbulence works against the drag of particles that do not follow it (Simonin & Viollet 1990; Elghobashi &
-/// Abou-Arab 1983): W = -k_p (2 k - q), q = 2 k/(1 + St) the covariance of the fluid's and a particle's fluctuations in
-/// equilibrium (Tchen-Hinze), St = (m/k_p)/T_L with T_L = 3/2 C_mu k/epsilon; q = 0 for a held particle.
+/// Abou-Arab 1983), q the covariance of the fluctuations of fluid and particle in equilibrium (Tchen-Hinze), none for a
+/// held particle.
 struct DragDissipation {
   static constexpr const char* name = "drag_dissipation";
   static constexpr ModelNote note = {
       "", "Simonin & Viollet 1990; Elghobashi & Abou-Arab 1983",
-      "W = -2 k_p k St/(1 + St), St = (m/k_p)/(3/2 C_mu k/epsilon); epsilon: C epsilon/k W",
+      "W = -k_p (2 k - q), q = 2 k/(1 + St), St = (m/k_p)/(3/2 C_mu k/epsilon); epsilon: C epsilon/k W",
       "decay among held particles in closed form; limits of St; sums"};
   double dissipation_factor = 1.2;
   void options(OptionGroup& option) {
@@ -51,7 +51,7 @@ struct DragDissipation {
 };
 
 /// Wakes: all of the work that the mean slip does against the drag becomes turbulence (Crowe 2000, eq. of the
-/// volume-averaged k): W = k_p |u - v|^2.
+/// volume-averaged k).
 struct SlipProduction {
   static constexpr const char* name = "slip_production";
   static constexpr ModelNote note = {"", "Crowe 2000", "W = k_p |u - v|^2; epsilon: C epsilon/k W", "its value; sums"};

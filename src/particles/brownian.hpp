@@ -42,12 +42,10 @@ struct BrownianWay {
   double jump;        ///< longest way by the noise of this substep
 };
 
-/// Brownian motion (3.293) by the exact step of Ornstein & Uhlenbeck: over a substep h the drag k (u - v) of a particle
-/// of mass m, rate r = k/m, z = r h, goes with jointly normal changes of velocity and position,
-///   <dv^2> = (k_B T/m) (1 - e^{-2z}),  <dx dv> = (k_B T/m) (1 - e^{-z})^2/r,
-///   <dx^2> - <dx dv>^2/<dv^2> = (k_B T/m) 2 (z - 2 tanh(z/2))/r^2
-/// in each direction, so that the friction of the motion is that of the noise for every h. The spin of a particle with
-/// viscous torque likewise. The random numbers are a function of particle id, time and seed: any ranks give the same.
+/// Brownian motion (3.293) by the exact step of Ornstein & Uhlenbeck (F5, docs/theory/fluid_forces.md): over a substep
+/// the drag of a particle goes with jointly normal changes of velocity and position, so that the friction of the motion
+/// is that of the noise for every step. The spin of a particle with viscous torque likewise. The random numbers are a
+/// function of particle id, time and seed: any ranks give the same.
 class Brownian {
  public:
   explicit Brownian(const BrownianOptions& options) : options_(options) {}

@@ -1,22 +1,56 @@
 // The loops over all pairs, compiled once per instruction set; include only from pair_kernels_*.cpp.
 #pragma once
-#include <limits>
-
 #include "particles/pack.hpp"
 #include "particles/pair_sums.hpp"
 
 namespace silt {
 namespace SILT_ISA {
 
-/// 1/sqrt(a). Where the processor has an estimate, two steps of Newton's method bring it to round-off.
-SILT_INLINE Pack inverse_root(Pack a) {
+/// Nearer than this (m2) two sources have no direction between them, and nothing acts; estimates in single precision
+/// hold its inverse.
+inline constexpr double least_square = 1e-36;
+
+// Which lanes of a block count.
 #if SILT_LANES == 8
-  Pack r = Vector(_mm512_rsqrt14_pd(__m512d(a.v)));
-  const Pack half = 0.5 * a;
-  r = r * (1.5 - half * r * r);
-  return r * (1.5 - half * r * r);
+using Lanes = __mmask8;
+SILT_INLINE Lanes apart(Pack square) {
+  return _mm512_cmp_pd_mask(__m512d(square.v), _mm512_set1_pd(least_square), _CMP_GT_OQ);
+}
+SILT_INLINE Lanes below(Pack square, double limit) {
+  return _mm512_cmp_pd_mask(__m512d(square.v), _mm512_set1_pd(limit), _CMP_LT_OQ);
+}
+/// The lanes whose places, from `first` on, are in [begin, end).
+SILT_INLINE Lanes places(int first, int begin, int end) {
+  const unsigned from = begin > first ? 0xffu << (begin - first) : 0xffu;
+  return Lanes(first + lanes > end ? from & (0xffu >> (first + lanes - end)) : from);
+}
+SILT_INLINE Lanes both(Lanes a, Lanes b) { return a & b; }
 #else
-  return 1.0 / sqrt(a);
+using Lanes = Mask;
+SILT_INLINE Lanes apart(Pack square) { return square > Pack(least_square); }
+SILT_INLINE Lanes below(Pack square, double limit) { return square < Pack(limit); }
+SILT_INLINE Lanes places(int first, int begin, int end) {
+  Bits bits;
+  for (int k = 0; k < lanes; ++k) bits[k] = first + k >= begin && first + k < end ? -1 : 0;
+  return {bits};
+}
+SILT_INLINE Lanes both(Lanes a, Lanes b) { return a & b; }
+#endif
+
+/// 1/sqrt(a) in the lanes that count, 0 in the others. Where the processor has an estimate y, its error e = 1 - a y^2
+/// is taken out by the series of (1 - e)^(-1/2), to round-off.
+SILT_INLINE Pack inverse_root(Pack a, Lanes counts) {
+#if SILT_LANES == 8
+  const Pack y = Vector(_mm512_maskz_rsqrt14_pd(counts, __m512d(a.v)));
+  const Pack e = 1.0 - a * y * y;
+  return y + y * e * (0.5 + e * (0.375 + e * 0.3125));
+#elif defined(__AVX2__)
+  const Pack estimate = Vector(_mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(__m256d(a.v)))));
+  const Pack y = Vector(Bits(estimate.v) & counts.bits);
+  const Pack e = 1.0 - a * y * y;
+  return y + y * e * (0.5 + e * (0.375 + e * (0.3125 + e * 0.2734375)));
+#else
+  return select(counts, 1.0 / sqrt(a), Pack(0.0));
 #endif
 }
 SILT_INLINE double sum_of(Pack a) {
@@ -24,73 +58,91 @@ SILT_INLINE double sum_of(Pack a) {
   for (int k = 0; k < lanes; ++k) sum += a.v[k];
   return sum;
 }
-SILT_INLINE Pack numbers(int first) {
-  Pack a;
-  for (int k = 0; k < lanes; ++k) a.v[k] = first + k;
-  return a;
-}
 SILT_INLINE void add_to(double* p, Pack a) { store_unaligned(p, load_unaligned(p) + a); }
 
-/// Adds up the action of the sources at the places [begin, end) on the one at i. `mutual`: the opposite force is given
-/// to them, for pairs that are taken once.
-template <bool dipole, bool force, bool field, bool periodic, bool mutual>
-SILT_INLINE void act_on(const PairLoop& loop, int i, int begin, int end, double square) {
+/// What a loop takes along with the pairs.
+enum class Which { once, all, near };  ///< both of a pair at once; one of it; one of it, up to the cut-off
+
+/// Adds up the action of the sources at the places [begin, end) on the one at i and, for pairs that are taken once,
+/// what it does to them. Places beyond the last source have no moment and no charge.
+template <bool dipole, bool force, bool field, bool periodic, Which which>
+SILT_INLINE void act_on(const PairLoop& loop, int i, int begin, int end) {
+  constexpr bool mutual = which == Which::once;
   const PairSources& s = *loop.sources;
-  const Pack x = s.x[i], y = s.y[i], z = s.z[i];
-  const Pack mx = s.a[i], my = s.b[i], mz = s.c[i];
+  const double *const X = s.x.data(), *const Y = s.y.data(), *const Z = s.z.data();
+  const double *const A = s.a.data(), *const B = s.b.data(), *const C = s.c.data();
+  double *const FX = force ? loop.force->x.data() : nullptr, *const FY = force ? loop.force->y.data() : nullptr,
+                *const FZ = force ? loop.force->z.data() : nullptr;
+  double *const HX = field ? loop.field->x.data() : nullptr, *const HY = field ? loop.field->y.data() : nullptr,
+                *const HZ = field ? loop.field->z.data() : nullptr;
+  const double square = loop.cutoff * loop.cutoff;
+  const Pack x = X[i], y = Y[i], z = Z[i], mx = A[i], my = dipole ? B[i] : 0, mz = dipole ? C[i] : 0;
   Pack fx = 0.0, fy = 0.0, fz = 0.0, hx = 0.0, hy = 0.0, hz = 0.0;
-  for (int j = begin; j < end; j += lanes) {
-    Pack dx = x - load_unaligned(&s.x[j]), dy = y - load_unaligned(&s.y[j]), dz = z - load_unaligned(&s.z[j]);
+  // Sums that are added to are met at the same places every time: whole cache lines.
+  for (int j = mutual ? begin / lanes * lanes : begin; j < end; j += lanes) {
+    Pack dx = x - load_unaligned(X + j), dy = y - load_unaligned(Y + j), dz = z - load_unaligned(Z + j);
     if constexpr (periodic) {
       dx = dx - Pack(loop.periods.length[0]) * nearest(dx * Pack(loop.periods.inverse[0]));
       dy = dy - Pack(loop.periods.length[1]) * nearest(dy * Pack(loop.periods.inverse[1]));
       dz = dz - Pack(loop.periods.length[2]) * nearest(dz * Pack(loop.periods.inverse[2]));
     }
     const Pack r2 = dx * dx + dy * dy + dz * dz;
-    // Not itself, not beyond the cut-off, not beyond the end.
-    Mask valid = (r2 > Pack(0.0)) & (r2 < Pack(square));
-    if (j + lanes > end) valid = valid & (numbers(j) < Pack(static_cast<double>(end)));
-    const Pack inverse = select(valid, inverse_root(r2), Pack(0.0)), inverse2 = inverse * inverse,
-               inverse3 = inverse2 * inverse;
+    Lanes counts = apart(r2);
+    if constexpr (which == Which::near) counts = both(counts, below(r2, square));
+    if (j < begin || j + lanes > end) counts = both(counts, places(j, begin, end));
+    const Pack inverse = inverse_root(r2, counts), inverse2 = inverse * inverse, inverse3 = inverse2 * inverse;
     if constexpr (dipole) {
-      const Pack nx = load_unaligned(&s.a[j]), ny = load_unaligned(&s.b[j]), nz = load_unaligned(&s.c[j]);
+      const Pack nx = load_unaligned(A + j), ny = load_unaligned(B + j), nz = load_unaligned(C + j);
       const Pack inverse5 = inverse3 * inverse2;
       const Pack b = nx * dx + ny * dy + nz * dz, q = inverse5 * b;
+      Pack p;
+      if constexpr (force || mutual) p = inverse5 * (mx * dx + my * dy + mz * dz);
       if constexpr (force) {
-        const Pack a = mx * dx + my * dy + mz * dz, m = mx * nx + my * ny + mz * nz, p = inverse5 * a;
-        const Pack g = inverse5 * m - 5.0 * p * b * inverse2;
+        const Pack m = mx * nx + my * ny + mz * nz;
+        const Pack g = inverse5 * m - 5.0 * inverse2 * b * p;
         const Pack gx = g * dx + q * mx + p * nx, gy = g * dy + q * my + p * ny, gz = g * dz + q * mz + p * nz;
         fx = fx + gx;
         fy = fy + gy;
         fz = fz + gz;
         if constexpr (mutual) {
-          add_to(&loop.force->x[j], -gx);
-          add_to(&loop.force->y[j], -gy);
-          add_to(&loop.force->z[j], -gz);
+          add_to(FX + j, -gx);
+          add_to(FY + j, -gy);
+          add_to(FZ + j, -gz);
         }
       }
       if constexpr (field) {
-        const Pack h = 3.0 * q;
-        hx = hx + (h * dx - inverse3 * nx);
-        hy = hy + (h * dy - inverse3 * ny);
-        hz = hz + (h * dz - inverse3 * nz);
+        const Pack third = (1.0 / 3.0) * inverse3;
+        hx = hx + q * dx - third * nx;
+        hy = hy + q * dy - third * ny;
+        hz = hz + q * dz - third * nz;
+        if constexpr (mutual) {
+          add_to(HX + j, p * dx - third * mx);
+          add_to(HY + j, p * dy - third * my);
+          add_to(HZ + j, p * dz - third * mz);
+        }
       }
     } else {
-      const Pack h = inverse3 * load_unaligned(&s.a[j]);
+      const Pack h = inverse3 * load_unaligned(A + j);
       hx = hx + h * dx;
       hy = hy + h * dy;
       hz = hz + h * dz;
+      if constexpr (mutual) {
+        const Pack back = -inverse3 * mx;
+        add_to(HX + j, back * dx);
+        add_to(HY + j, back * dy);
+        add_to(HZ + j, back * dz);
+      }
     }
   }
   if constexpr (force) {
-    loop.force->x[i] += sum_of(fx);
-    loop.force->y[i] += sum_of(fy);
-    loop.force->z[i] += sum_of(fz);
+    FX[i] += sum_of(fx);
+    FY[i] += sum_of(fy);
+    FZ[i] += sum_of(fz);
   }
   if constexpr (field) {
-    loop.field->x[i] += sum_of(hx);
-    loop.field->y[i] += sum_of(hy);
-    loop.field->z[i] += sum_of(hz);
+    HX[i] += sum_of(hx);
+    HY[i] += sum_of(hy);
+    HZ[i] += sum_of(hz);
   }
 }
 
@@ -98,20 +150,19 @@ template <bool dipole, bool force, bool field, bool periodic>
 void all_pairs(const PairLoop& loop) {
   const PairSources& s = *loop.sources;
   const int owned = static_cast<int>(s.place.size());
-  const bool cut = loop.cutoff > 0;
-  const double square = cut ? loop.cutoff * loop.cutoff : std::numeric_limits<double>::max();
-  if constexpr (dipole && force && !field)
-    if (!cut && owned == s.count) {  // alone: every pair once
-      for (int i = 0; i < owned; ++i) act_on<dipole, force, field, periodic, true>(loop, i, i + 1, s.count, square);
-      return;
-    }
-  for (int p = 0; p < owned; ++p) {
-    if (!cut) {
-      act_on<dipole, force, field, periodic, false>(loop, s.place[p], 0, s.count, square);
-      continue;
-    }
-    for (int k = s.run_start[p]; k < s.run_start[p + 1]; ++k)
-      act_on<dipole, force, field, periodic, false>(loop, s.place[p], s.run[2 * k], s.run[2 * k + 1], square);
+  if (loop.cutoff > 0) {
+    for (int p = 0; p < owned; ++p)
+      for (int k = s.run_start[p]; k < s.run_start[p + 1]; ++k)
+        act_on<dipole, force, field, periodic, Which::near>(loop, s.place[p], s.run[2 * k], s.run[2 * k + 1]);
+    return;
+  }
+  if (owned == 0) return;
+  // Those of this rank stand together: with each other every pair once, with the others their own half.
+  const int first = s.place[0], last = first + owned;
+  for (int i = first; i < last; ++i) {
+    act_on<dipole, force, field, periodic, Which::once>(loop, i, i + 1, last);
+    if (first > 0) act_on<dipole, force, field, periodic, Which::all>(loop, i, 0, first);
+    if (last < s.count) act_on<dipole, force, field, periodic, Which::all>(loop, i, last, s.count);
   }
 }
 

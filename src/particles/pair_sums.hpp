@@ -45,11 +45,10 @@ struct PairLoop {
   double cutoff = 0;  ///< m; 0: all with all
 };
 
-/// The loops for one instruction set. With r the vector from j to i,
-///  - dipoles, force: sum_j |r|^-5 [(m_i.r) m_j + (m_j.r) m_i + (m_i.m_j) r - 5 (m_i.r)(m_j.r) r / r^2], times
-///    3 mu0/(4 pi) (7.77);
-///  - dipoles, field: sum_j |r|^-5 [3 (m_j.r) r - r^2 m_j], times 1/(4 pi) (7.78);
-///  - charges, field: sum_j q_j r |r|^-3, times 1/(4 pi eps).
+/// The loops for one instruction set: the sums over j of the formulas of `magnetic_models` and `electric_models`
+///  - dipoles, force: of F_ij over 3 mu0/(4 pi);
+///  - dipoles, field: of H_ij over 3/(4 pi);
+///  - charges, field: of the field of Q_j over 1/(4 pi eps).
 struct PairKernels {
   void (*dipoles)(const PairLoop&);
   void (*charges)(const PairLoop&);

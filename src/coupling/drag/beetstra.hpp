@@ -7,9 +7,7 @@
 
 namespace silt {
 
-/// Lattice-Boltzmann fit for packed and fluidised spheres (Beetstra, van der Hoef & Kuipers 2007), s = 1 - a:
-/// F = 10 s/a^2 + a^2 (1 + 1.5 s^1/2) + 0.413 Re/(24 a^2) (1/a + 3 a s + 8.4 Re^-0.343) / (1 + 10^(3 s) Re^-(1+4s)/2),
-/// k = 3 pi mu d a F, Re = a rho d |u-v| / mu.
+/// Lattice-Boltzmann fit for packed and fluidised spheres (Beetstra, van der Hoef & Kuipers 2007).
 struct BeetstraDrag {
   static constexpr const char* name = "beetstra";
   static constexpr ModelNote note = {

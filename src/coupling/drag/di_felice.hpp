@@ -10,15 +10,15 @@
 
 namespace silt {
 
-/// Drag of a single sphere in the superficial velocity a (u - v), times a^-chi, chi = 3.7 - 0.65 exp(-(1.5 - log10
-/// Re)^2 / 2), Re = a rho d |u-v| / mu (Di Felice 1994; 7.92-7.93). Single sphere: Dallavalle's law as in the paper, or
-/// any other.
+/// Drag of a single sphere in the superficial velocity, times a power of the void fraction (Di Felice 1994; 7.92-7.93).
+/// Single sphere: Dallavalle's law as in the paper, or any other.
 struct DiFeliceDrag {
   static constexpr const char* name = "di_felice";
-  static constexpr ModelNote note = {"(7.92-7.93)", "Di Felice 1994",
-                                     "single-particle drag (Dallavalle's C_D = (0.63 + 4.8 Re^-0.5)^2, or another) in "
-                                     "a (u - v), times a^-chi, chi = 3.7 - 0.65 exp(-(1.5 - log10 Re)^2/2)",
-                                     "chi in both limits and at Re = 10^1.5; terminal velocity"};
+  static constexpr ModelNote note = {
+      "(7.92-7.93)", "Di Felice 1994",
+      "single-particle drag (Dallavalle's C_D = (0.63 + 4.8 Re^-0.5)^2, or another) in a (u - v), times a^-chi, chi = "
+      "3.7 - 0.65 exp(-(1.5 - log10 Re)^2/2), Re = a rho d |u-v|/mu",
+      "chi in both limits and at Re = 10^1.5; terminal velocity"};
   enum class Single { dallavalle, schiller_naumann, haider_levenspiel, stokes_cunningham };
   void options(OptionGroup& option) {
     std::string law = "dallavalle";
@@ -41,7 +41,7 @@ struct DiFeliceDrag {
   double mean_free_path = 0;
   HaiderLevenspielCoefficients coefficients{1};
 
-  /// a^-chi at the Reynolds number of the superficial velocity.
+  /// The power of the void fraction at the Reynolds number of the superficial velocity.
   static double crowding(double void_fraction, double reynolds) {
     // At rest log10 Re is -infinity and chi its creeping-flow limit, 3.7.
     const double distance = 1.5 - std::log10(std::max(reynolds, 1e-30));

@@ -7,7 +7,7 @@
 
 namespace silt {
 
-/// Packed bed, Ergun (1952): beta = 150 (1-a)^2 mu / (a d^2) + 1.75 (1-a) rho |u-v| / d, k = V_p beta / (1-a)  (7.98).
+/// Packed bed, Ergun (1952) (7.98); V the particle's volume.
 struct ErgunDrag {
   static constexpr const char* name = "ergun";
   static constexpr ModelNote note = {"(7.98)", "Ergun 1952", "k = V (150 (1-a) mu/(a d^2) + 1.75 rho |u-v|/d)",

@@ -21,13 +21,13 @@ struct FlowAround {
   double superficial_reynolds() const { return void_fraction * reynolds(); }
 };
 
-/// C_D Re / 24 of a sphere, the drag over Stokes': Schiller & Naumann (1935) up to Re 1000, C_D = 0.44 above.
+/// C_D Re / 24 of a sphere, the drag over Stokes', by the formula of SchillerNaumannDrag.
 inline double schiller_naumann_factor(double reynolds) {
   if (reynolds > 1000) return 0.44 * reynolds / 24;
   return 1 + 0.15 * std::pow(reynolds, 0.687);
 }
 
-/// C_D Re / 24 with C_D = (0.63 + 4.8 Re^-1/2)^2, Dallavalle (1948). Tends to 0.96 as Re -> 0.
+/// C_D Re / 24 by Dallavalle (1948), the formula of DiFeliceDrag. Tends to 0.96 as Re -> 0.
 inline double dallavalle_factor(double reynolds) {
   const double root = 0.63 * std::sqrt(reynolds) + 4.8;
   return root * root / 24;

@@ -6,14 +6,14 @@
 
 namespace silt {
 
-/// Ergun below a void fraction of 0.8, Wen & Yu above (Gidaspow 1994; 7.98-7.99). With `blending` the two are joined
-/// smoothly by phi = atan(150 * 1.75 (0.2 - (1 - a))) / pi + 1/2, k = (1 - phi) k_Ergun + phi k_WenYu (Huilin &
-/// Gidaspow 2003).
+/// Ergun below a void fraction of 0.8, Wen & Yu above (Gidaspow 1994; 7.98-7.99). With `blending` the two are weighted
+/// by an arc tangent of the void fraction (Huilin & Gidaspow 2003).
 struct GidaspowDrag {
   static constexpr const char* name = "gidaspow";
   static constexpr ModelNote note = {
       "(7.98-7.99)", "Gidaspow 1994; Huilin & Gidaspow 2003",
-      "Ergun for a < 0.8, Wen & Yu above; blending: weights atan(262.5 (a - 0.8))/pi + 1/2",
+      "Ergun for a < 0.8, Wen & Yu above; blending: Wen & Yu with the weight atan(150 1.75 (a - 0.8))/pi + 1/2, Ergun "
+      "with the rest",
       "beta of all particles in a volume; both branches away from the joint; terminal velocity"};
   bool blending = false;
   void options(OptionGroup& option) {

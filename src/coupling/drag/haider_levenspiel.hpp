@@ -5,8 +5,7 @@
 
 namespace silt {
 
-/// The coefficients of Haider & Levenspiel (1989) for a sphericity p (7.85-7.87): C_D Re/24 = 1 + b1 Re^b2 + b3 Re^2 /
-/// (24 (b4 + Re)).
+/// The coefficients b1 to b4 of Haider & Levenspiel (1989) for a sphericity p (7.85-7.87).
 struct HaiderLevenspielCoefficients {
   double b1, b2, b3, b4;
   explicit HaiderLevenspielCoefficients(double p)

@@ -7,10 +7,7 @@
 
 namespace silt {
 
-/// Lattice-Boltzmann fit for beds of spheres (Hill, Koch & Ladd 2001; Koch & Hill 2001), s = 1 - a:
-/// beta = 18 mu a^2 s / d^2 (F0 + F3 Re / 2), Re = a rho d |u-v| / mu, k = V_p beta / s, with
-/// F0 = (1 + 3 (s/2)^1/2 + (135/64) s ln s + 16.14 s) / (1 + 0.681 s - 8.48 s^2 + 8.16 s^3) for s < 0.4, 10 s / a^3
-/// above; F3 = 0.0673 + 0.212 s + 0.0232 / a^5.
+/// Lattice-Boltzmann fit for beds of spheres (Hill, Koch & Ladd 2001; Koch & Hill 2001).
 struct KochHillDrag {
   static constexpr const char* name = "koch_hill";
   static constexpr ModelNote note = {

@@ -8,16 +8,14 @@
 namespace silt {
 
 /// The closure of Mazzei & Lettieri (2007): the drag with which a homogeneous suspension settles by the law of
-/// Richardson & Zaki, U = u_t a^n, at every Reynolds number. beta = 3/4 C_D(Re*) a (1-a) rho |u-v| / d a^{2 (1 - n)},
-/// Re* = Re / a^n, Re = a rho d |u-v| / mu, C_D of Dallavalle, n = (4.8 + 0.42 Re*^{3/4}) / (1 + 0.175 Re*^{3/4}) (Rowe
-/// 1987), which gives n by iteration; k = V_p beta / (1-a).
+/// Richardson & Zaki at every Reynolds number. Its exponent n (Rowe 1987) goes by the Reynolds number of the single
+/// sphere, which follows from n: found by iteration.
 struct MazzaDrag {
   static constexpr const char* name = "mazza";
-  static constexpr ModelNote note = {
-      "", "Mazzei & Lettieri 2007; Rowe 1987",
-      "k = V 3/4 C_D(Re/a^n) a rho |u-v|/d a^(2 - 2n), C_D of Dallavalle, n = (4.8 + 0.42 "
-      "Re*^0.75)/(1 + 0.175 Re*^0.75), Re* = Re/a^n",
-      "settling by Richardson & Zaki's law; terminal velocity"};
+  static constexpr ModelNote note = {"", "Mazzei & Lettieri 2007; Rowe 1987",
+                                     "k = V 3/4 C_D(Re*) a rho |u-v|/d a^(2 - 2n), C_D of Dallavalle, n = (4.8 + 0.42 "
+                                     "Re*^0.75)/(1 + 0.175 Re*^0.75), Re* = Re/a^n, Re = a rho d |u-v|/mu",
+                                     "settling by Richardson & Zaki's law; terminal velocity"};
   void options(OptionGroup&) {}
   /// Exponent of Richardson & Zaki at the Reynolds number of the single sphere's terminal velocity.
   static double exponent(double reynolds) {

@@ -7,15 +7,13 @@
 
 namespace silt {
 
-/// Lattice-Boltzmann fit for packed uniform spheres (Rong, Dong & Yu 2013), in the form of Di Felice: Dallavalle's
-/// single sphere in the superficial velocity times a^-b, b = 2.65 (a + 1) - (5.3 - 3.5 a) a^2 exp(-(1.5 - log10 Re)^2 /
-/// 2), Re = a rho d |u-v| / mu.
+/// Lattice-Boltzmann fit for packed uniform spheres (Rong, Dong & Yu 2013), in the form of Di Felice.
 struct RongDrag {
   static constexpr const char* name = "rong";
   static constexpr ModelNote note = {
       "", "Rong, Dong & Yu 2013",
-      "Dallavalle, C_D = (0.63 + 4.8 Re^-0.5)^2, in a (u - v), times a^-b, b = 2.65 (a + 1) - (5.3 - 3.5 a) a^2 "
-      "exp(-(1.5 - log10 Re)^2/2)",
+      "drag of a sphere by Dallavalle in a (u - v), times a^-b, b = 2.65 (a + 1) - (5.3 - 3.5 a) a^2 exp(-(1.5 - log10 "
+      "Re)^2/2), Re = a rho d |u-v|/mu",
       "values of PhasicFlow; exponent in creeping flow and at Re = 10^1.5; terminal velocity"};
   void options(OptionGroup&) {}
   double exchange(const FlowAround& flow) const {

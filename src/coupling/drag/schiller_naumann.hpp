@@ -5,8 +5,7 @@
 
 namespace silt {
 
-/// A single sphere: C_D = 24/Re (1 + 0.15 Re^0.687), 0.44 above Re = 1000 (Schiller & Naumann 1935). No effect of
-/// neighbours.
+/// A single sphere (Schiller & Naumann 1935). No effect of neighbours.
 struct SchillerNaumannDrag {
   static constexpr const char* name = "schiller_naumann";
   static constexpr ModelNote note = {"", "Schiller & Naumann 1935",

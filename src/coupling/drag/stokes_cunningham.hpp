@@ -5,14 +5,14 @@
 
 namespace silt {
 
-/// Cunningham's slip correction C_c = 1 + Kn (1.257 + 0.4 exp(-1.1 / Kn)), Kn = 2 lambda / d (3.295); 1 in a continuum.
+/// Cunningham's slip correction C_c (3.295); 1 in a continuum.
 inline double cunningham(double mean_free_path, double diameter) {
   if (mean_free_path == 0) return 1;
   const double knudsen = 2 * mean_free_path / diameter;
   return 1 + knudsen * (1.257 + 0.4 * std::exp(-1.1 / knudsen));
 }
 
-/// Creeping flow around a single sphere with slip (7.91): k = 3 pi mu d / C_c.
+/// Creeping flow around a single sphere with slip (7.91).
 struct StokesCunninghamDrag {
   static constexpr const char* name = "stokes_cunningham";
   static constexpr ModelNote note = {"(7.91), (3.295)", "Stokes 1851; Cunningham 1910",

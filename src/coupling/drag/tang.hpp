@@ -7,10 +7,8 @@
 
 namespace silt {
 
-/// Immersed-boundary fit for static arrays of spheres up to Re = 1000 (Tang, Peters, Kuipers, Kriebitzsch & van der
-/// Hoef 2015), s = 1 - a: F = 10 s/a^2 + a^2 (1 + 1.5 s^1/2) + [0.11 s (1 + s) - 0.00456/a^4 + (0.169 a + 0.0644/a^4)
-/// Re^-0.343] Re, k = 3 pi mu d a F, Re = a rho d |u-v| / mu. Beyond the fit, above Re = 1000, the bracket keeps its
-/// value there: C_D is constant.
+/// Immersed-boundary fit for static arrays of spheres (Tang, Peters, Kuipers, Kriebitzsch & van der Hoef 2015). Beyond
+/// its range, above a Reynolds number of 1000, the bracket of the inertial part keeps its value: C_D is constant.
 struct TangDrag {
   static constexpr const char* name = "tang";
   static constexpr ModelNote note = {

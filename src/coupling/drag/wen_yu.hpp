@@ -5,8 +5,7 @@
 
 namespace silt {
 
-/// Fluidised suspension, Wen & Yu (1966): beta = 3/4 C_D a (1-a) rho |u-v| / d a^-2.65, k = V_p beta / (1-a), C_D of
-/// Schiller & Naumann at Re = a rho d |u-v| / mu  (7.99).
+/// Fluidised suspension, Wen & Yu (1966) (7.99).
 struct WenYuDrag {
   static constexpr const char* name = "wen_yu";
   static constexpr ModelNote note = {"(7.99)", "Wen & Yu 1966",

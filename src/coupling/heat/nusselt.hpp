@@ -12,7 +12,7 @@ struct HeatFlow {
   double void_fraction;  ///< alpha
 };
 
-/// Nu = 2 + 0.6 Re^1/2 Pr^1/3 (7.97), Ranz & Marshall 1952.
+/// A single sphere (7.97), Ranz & Marshall 1952.
 struct RanzMarshallNusselt {
   static constexpr const char* name = "ranz_marshall";
   static constexpr ModelNote note = {"(7.97)", "Ranz & Marshall 1952", "Nu = 2 + 0.6 Re^1/2 Pr^1/3",
@@ -21,12 +21,12 @@ struct RanzMarshallNusselt {
   double nusselt(const HeatFlow& flow) const { return 2 + 0.6 * std::sqrt(flow.reynolds) * std::cbrt(flow.prandtl); }
 };
 
-/// Beds and suspensions, 0.35 < a <= 1 (Gunn 1978), Re with the superficial velocity:
-/// Nu = (7 - 10 a + 5 a^2) (1 + 0.7 Re^0.2 Pr^1/3) + (1.33 - 2.4 a + 1.2 a^2) Re^0.7 Pr^1/3.
+/// Beds and suspensions of a void fraction above 0.35 (Gunn 1978).
 struct GunnNusselt {
   static constexpr const char* name = "gunn";
   static constexpr ModelNote note = {
-      "", "Gunn 1978", "Nu = (7 - 10a + 5a^2)(1 + 0.7 Re^0.2 Pr^1/3) + (1.33 - 2.4a + 1.2a^2) Re^0.7 Pr^1/3",
+      "", "Gunn 1978",
+      "Nu = (7 - 10a + 5a^2)(1 + 0.7 Re^0.2 Pr^1/3) + (1.33 - 2.4a + 1.2a^2) Re^0.7 Pr^1/3, Re = a rho d |u-v|/mu",
       "limits; cooling of a sphere"};
   void options(OptionGroup&) {}
   double nusselt(const HeatFlow& flow) const {
@@ -36,7 +36,7 @@ struct GunnNusselt {
   }
 };
 
-/// Nu = 2 + (0.4 Re^1/2 + 0.06 Re^2/3) Pr^0.4, Whitaker 1972, with the viscosity at the surface that of the flow.
+/// A single sphere, Whitaker 1972, with the viscosity at the surface that of the flow.
 struct WhitakerNusselt {
   static constexpr const char* name = "whitaker";
   static constexpr ModelNote note = {"", "Whitaker 1972", "Nu = 2 + (0.4 Re^1/2 + 0.06 Re^2/3) Pr^0.4",
@@ -47,7 +47,7 @@ struct WhitakerNusselt {
   }
 };
 
-/// Heat transfer between fluid and particle, `-nusselt_type`: h = Nu lambda / d.
+/// Heat transfer between fluid and particle, `-nusselt_type`.
 using NusseltModels = Models<RanzMarshallNusselt, GunnNusselt, WhitakerNusselt>;
 
 }  // namespace silt

@@ -14,7 +14,7 @@ struct NoMagnusLift {
   Vec3 force(const ShearFlow&) const { return Vec3::Zero(); }
 };
 
-/// Lift of a spinning sphere in creeping flow (Rubinow & Keller 1961): F = (pi/8) d^3 rho (curl u / 2 - w) x (u - v).
+/// Lift of a spinning sphere in creeping flow (Rubinow & Keller 1961).
 struct RubinowKellerLift {
   static constexpr const char* name = "rubinow_keller";
   static constexpr ModelNote note = {"", "Rubinow & Keller 1961", "F = (pi/8) d^3 rho (curl u/2 - w) x (u - v)",
@@ -25,7 +25,7 @@ struct RubinowKellerLift {
   }
 };
 
-/// The same with the lift coefficient of Lun & Liu (1997): times 0.178 + 0.822 Re^-0.522 above Re = 1.
+/// The same with the lift coefficient of Lun & Liu (1997) above a Reynolds number of 1.
 struct LunLiuLift {
   static constexpr const char* name = "lun_liu";
   static constexpr ModelNote note = {"", "Lun & Liu 1997",

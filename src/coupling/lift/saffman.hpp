@@ -14,9 +14,7 @@ struct NoSaffmanLift {
   Vec3 force(const ShearFlow&) const { return Vec3::Zero(); }
 };
 
-/// Lift by shear on a sphere that leads or lags (Saffman 1965), beyond its small Reynolds numbers as Mei (1992) fitted:
-/// F = 1.615 d^2 (rho mu / |curl u|)^1/2 f (u - v) x curl u, with b = d |curl u| / (2 |u - v|) and
-/// f = (1 - 0.3314 b^1/2) exp(-Re/10) + 0.3314 b^1/2 for Re <= 40, 0.0524 (b Re)^1/2 above.
+/// Lift by shear on a sphere that leads or lags (Saffman 1965), beyond its small Reynolds numbers as Mei (1992) fitted.
 struct SaffmanMeiLift {
   static constexpr const char* name = "saffman_mei";
   static constexpr ModelNote note = {

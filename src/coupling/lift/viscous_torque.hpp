@@ -14,7 +14,7 @@ struct NoViscousTorque {
   double exchange(const ShearFlow&) const { return 0; }
 };
 
-/// The fluid's hold on a sphere's spin, M = k_w (curl u / 2 - w), k_w = pi mu d^3 (3.289). N m s
+/// The fluid's hold on a sphere's spin (3.289). `exchange` is the torque over the relative spin, N m s.
 struct StokesTorque {
   static constexpr const char* name = "stokes";
   static constexpr ModelNote note = {"(3.289)", "Lamb 1932", "M = pi mu d^3 (curl u/2 - w)",
@@ -25,8 +25,7 @@ struct StokesTorque {
   }
 };
 
-/// The same beyond creeping flow (Dennis, Singh & Ingham 1980): M = (rho/2) (d/2)^5 C_R |W| W, W = curl u / 2 - w,
-/// Re_R = rho d^2 |W| / mu; C_R = 64 pi/Re_R up to Re_R = 32, 12.9 Re_R^-1/2 + 128.4/Re_R above.
+/// The same beyond creeping flow (Dennis, Singh & Ingham 1980).
 struct DennisTorque {
   static constexpr const char* name = "dennis";
   static constexpr ModelNote note = {

@@ -8,9 +8,9 @@ namespace silt {
 /// Dmt for a pair of materials whose Tabor parameter (7.53) is below 0.1 for all its sizes, Jkr for all others.
 struct AutomaticAdhesion {
   static constexpr const char* name = "auto";
-  static constexpr ModelNote note{"(7.53)", "Tabor 1977",
-                                  "dmt where (4 R_eff g^2/(E_eff^2 D^3))^(1/3) < 0.1, else jkr (a notice below 3)",
-                                  "takes dmt and jkr on their sides"};
+  static constexpr ModelNote note{
+      "(7.53)", "Tabor 1977", "dmt where mu_T = (4 R_eff g^2/(E_eff^2 D^3))^(1/3) < 0.1, else jkr (a notice below 3)",
+      "takes dmt and jkr on their sides"};
   static constexpr bool extended = false, jumps = true;
   AdhesionOptions shared;
   void options(OptionGroup& option) { shared.options(option); }

@@ -13,18 +13,16 @@
 
 namespace silt {
 
-/// Liquid bridges. Capillary force (7.54-7.55), Maugis 1987 (the print lacks sigma): F = -4 pi R_eff sigma cos(theta)
-/// G, G = 1 - (1 + V/(pi R_eff h^2))^(-1/2), G = 1 in contact. Viscous force (7.57), Matthewson 1988: F = 6 pi mu
-/// R_eff^2 G^2 (dx/dt)/h with h not below the roughness. A bridge forms on contact and breaks (7.56) at h = (1 +
-/// theta/2)(1 + sqrt(Ca)) V^(1/3) (Lian et al. 1993, Pitois et al. 2000) or, as printed, with V/(4 R_eff^2) for
-/// V^(1/3); Ca = mu |v_n|/sigma, at most 1. liquid_exchange.hpp makes and breaks the bridges and keeps account of the
-/// liquid.
+/// Liquid bridges: capillary force (7.54-7.55), Maugis 1987 (the print lacks sigma); viscous force (7.57), Matthewson
+/// 1988, with the gap not below the roughness. A bridge forms on contact and breaks (7.56) as in Lian et al. 1993 and
+/// Pitois et al. 2000, or as printed; the capillary number Ca of the speed of parting counts at most 1.
+/// liquid_exchange.hpp makes and breaks the bridges and keeps account of the liquid.
 struct CapillaryBridge {
   static constexpr const char* name = "capillary";
   static constexpr ModelNote note{"(7.54-7.57)", "Maugis 1987; Matthewson 1988; Lian et al. 1993; Pitois et al. 2000",
                                   "F = -4 pi R_eff sigma cos(theta) G + 6 pi mu R_eff^2 G^2 (dx/dt)/h, G = 1 - (1 + "
-                                  "V/(pi R_eff h^2))^-0.5; breaks at h "
-                                  "= (1 + theta/2)(1 + sqrt(Ca)) V^(1/3), or with V/(4 R_eff^2)",
+                                  "V/(pi R_eff h^2))^-0.5, 1 in contact; breaks at h = (1 + theta/2)(1 + sqrt(Ca)) "
+                                  "V^(1/3), Ca = mu |v_n|/sigma, or with V/(4 R_eff^2) in place of V^(1/3)",
                                   "force and rupture distance of a pair drawn apart; liquid of films and bridges "
                                   "constant to round-off on any ranks"};
   static constexpr bool extended = false, jumps = true;
@@ -84,8 +82,8 @@ struct CapillaryBridge {
     return (1 + theta() / 2) * (1 + std::sqrt(std::min(capillary_number, 1.0))) * size;
   }
   double capillary_number(double speed) const { return viscosity * std::abs(speed) / *surface_tension; }
-  /// The share of its film that a particle gives to a bridge: the cap its partner sees (Shi & McCarthy 2008),
-  /// 1/2 (1 - sqrt(1 - (R_j/(R_i + R_j))^2)); at a wall (other = 0) one half.
+  /// The share of its film that a particle gives to a bridge: the cap its partner sees (Shi & McCarthy 2008;
+  /// docs/theory/particles.md); at a wall (no other radius) one half.
   static double film_share(double own, double other) {
     const double seen = other > 0 ? other / (own + other) : 1;
     return 0.5 * (1 - std::sqrt(1 - seen * seen));

@@ -4,9 +4,8 @@
 namespace silt {
 
 /// Van der Waals force between two spheres at the gap h (7.45-7.46; the print of the potential loses its minus sign),
-/// Hamaker 1937 for unequal radii:
-///   F = -32/3 A r R_i^3 R_j^3 / ((r^2 - (R_i + R_j)^2)^2 (r^2 - (R_i - R_j)^2)^2),
-/// written without differences of large numbers. 1/R_j = 0 is a wall. N, < 0 attractive
+/// Hamaker 1937 for unequal radii (the formula of VdwDlvo), written without differences of large numbers. 1/R_j = 0 is
+/// a wall. N, < 0 attractive
 template <class Real>
 SILT_INLINE Real hamaker_force(Real hamaker, Real gap, Real radius, Real inverse_other) {
   const Real one(1.0), two(2.0), wide = two * radius + gap;
@@ -15,9 +14,8 @@ SILT_INLINE Real hamaker_force(Real hamaker, Real gap, Real radius, Real inverse
          (outer * outer * inner * inner);
 }
 
-/// Force between two double layers of constant potentials at the gap h (7.47), Hogg, Healy & Fuerstenau 1966:
-///   F = 2 pi eps R_eff kappa e (2 psi_i psi_j - (psi_i^2 + psi_j^2) e)/(1 - e^2), e = exp(-kappa h),
-/// with equal potentials 4 pi eps R_eff kappa psi^2 e/(1 + e). `permittivity` is 2 pi eps. N, > 0 repulsive
+/// Force between two double layers of constant potentials at the gap h (7.47), Hogg, Healy & Fuerstenau 1966 (the
+/// formula of ElectrostaticDlvo). `permittivity` is 2 pi eps. N, > 0 repulsive
 template <class Real>
 SILT_INLINE Real double_layer_force(Real permittivity, Real product, Real squares, Real inverse_length, Real gap,
                                     Real effective_radius) {

@@ -10,8 +10,8 @@
 
 namespace silt {
 
-/// Adhesion of hard spheres (7.51-7.52), Derjaguin, Muller & Toporov 1975: F = k x^1.5 - 4 pi g R_eff in contact, a =
-/// sqrt(R_eff x), with the spring and the dissipation of the normal law; g the surface energy of the pair.
+/// Adhesion of hard spheres (7.51-7.52), Derjaguin, Muller & Toporov 1975, with the spring and the dissipation of the
+/// normal law; g the surface energy of the pair.
 struct Dmt {
   static constexpr const char* name = "dmt";
   static constexpr ModelNote note{"(7.51-7.52)", "Derjaguin, Muller & Toporov 1975; Thornton & Yin 1991",

@@ -13,10 +13,8 @@
 
 namespace silt {
 
-/// Attraction of particles that float at a fluid interface (7.58-7.64), Nicolson 1949: F = -2 pi sigma Q_i Q_j q K1(q
-/// r), q = sqrt(g drho/sigma), capillary charge Q = tan(theta - beta)/(q K1(q d sin(beta)/2)); where the Bond number is
-/// small Q = d/2 sin(beta) tan(theta - beta) and F = -2 pi sigma Q_i Q_j/r. theta is the contact angle, beta the
-/// filling angle, d the diameter, r the distance of the centres. Walls do not attract.
+/// Attraction of particles that float at a fluid interface (7.58-7.64), Nicolson 1949, Q their capillary charges. theta
+/// is the contact angle, beta the filling angle, d the diameter, r the distance of the centres. Walls do not attract.
 struct Interfacial {
   static constexpr const char* name = "nicolson";
   static constexpr ModelNote note{

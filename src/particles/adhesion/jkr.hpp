@@ -11,13 +11,8 @@
 namespace silt {
 
 /// Adhesion of soft spheres (7.49-7.50, 7.88-7.90), Johnson, Kendall & Roberts 1971, in the place of the Hertz spring:
-///   F = 4 F_c [(a/a0)^3 - (a/a0)^1.5],  x = a0^2/(2 R_eff) [2 (a/a0)^2 - 4/3 (a/a0)^0.5],
-/// F_c = 3 pi g R_eff the pull-off force, a0 = (9 pi g R_eff^2/E_eff)^(1/3), g the surface energy of the pair (work of
-/// adhesion 2 g). The contact is made at x = 0 and breaks at x = -x_c = -a0^2/(2 6^(1/3) R_eff). The dissipation is
-/// that of the normal law.
-///
-/// With u = (a/a0)^0.5 the overlap gives u^4 - 2/3 u = y/2, y = 2 R_eff x/a0^2, solved in closed form: u = (w +
-/// sqrt(4/(3 w) - w^2))/2 with w^2 the real root of z^3 + 2 y z = 4/9.
+/// F_c the pull-off force, g the surface energy of the pair (work of adhesion 2 g). The neck is made at touching and
+/// breaks beyond it. The dissipation is that of the normal law.
 struct Jkr {
   static constexpr const char* name = "jkr";
   static constexpr ModelNote note{
@@ -48,7 +43,8 @@ struct Jkr {
     Real made;  ///< 1 while the neck holds
   };
 
-  /// (a/a0)^0.5 from y = 2 R_eff x/a0^2.
+  /// u, the root of a/a0, from y, the overlap x over a0^2/(2 R_eff): u^4 - 2/3 u = y/2, solved in closed form by
+  /// u = (w + sqrt(4/(3 w) - w^2))/2 with w^2 the real root of z^3 + 2 y z = 4/9.
   template <class Real>
   static SILT_INLINE Real root_of_neck(Real y) {
     // z = s - t with s t = 2 y/3 and s^3 - t^3 = 4/9 (Cardano), written without the difference.

@@ -10,11 +10,10 @@
 
 namespace silt {
 
-/// Lubrication: the fluid that two near surfaces squeeze out of their gap, or draw into it, resists with F = 6 pi mu
-/// R_eff^2 (dx/dt) (1/h - 1/h_o) for h < h_o (Reynolds 1886; the leading term of Jeffrey & Onishi 1984, less its value
-/// at the outer gap h_o as in Nguyen & Ladd 2002, because drag laws know of what is further away), h not below the
-/// least gap, the height of the roughness. Without `shifted` the term 1/h_o is left out, and the force begins with a
-/// jump. Both gaps are given as lengths or as shares of R_eff.
+/// Lubrication: the fluid that two near surfaces squeeze out of their gap, or draw into it, resists (Reynolds 1886; the
+/// leading term of Jeffrey & Onishi 1984, less its value at the outer gap h_o as in Nguyen & Ladd 2002, because drag
+/// laws know of what is further away); h counts not below the least gap, the height of the roughness. Without `shifted`
+/// the term 1/h_o is left out, and the force begins with a jump. Both gaps are given as lengths or as shares of R_eff.
 struct SqueezeFilm {
   static constexpr const char* name = "squeeze";
   static constexpr ModelNote note{"", "Reynolds 1886; Jeffrey & Onishi 1984; Nguyen & Ladd 2002",

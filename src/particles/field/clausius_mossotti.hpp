@@ -9,7 +9,7 @@ struct Dielectric {
   double particle_permittivity, fluid_permittivity;
   double particle_conductivity = 0, fluid_conductivity = 0;
 
-  /// K = (e_p - e_f)/(e_p + 2 e_f) in a constant field without conduction (7.68): between -1/2 and 1.
+  /// K in a constant field without conduction (7.68): between -1/2 and 1.
   double insulating() const {
     return (particle_permittivity - fluid_permittivity) / (particle_permittivity + 2 * fluid_permittivity);
   }
@@ -17,7 +17,7 @@ struct Dielectric {
   double conducting() const {
     return (particle_conductivity - fluid_conductivity) / (particle_conductivity + 2 * fluid_conductivity);
   }
-  /// K(w) = [e_p - e_f - j (l_p - l_f)/w]/[e_p + 2 e_f - j (l_p + 2 l_f)/w] (7.73), w in rad/s.
+  /// K of an alternating field (7.73), w in rad/s.
   std::complex<double> at(double frequency) const {
     using Complex = std::complex<double>;
     return Complex(particle_permittivity - fluid_permittivity,

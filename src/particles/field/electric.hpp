@@ -30,7 +30,7 @@ inline constexpr SwitchedModel electric_models[] = {
      {"", "Coulomb 1785", "F = Q_i Q_j/(4 pi e_f r^2), all pairs or up to a cut-off", "two charges fly apart"}},
     {"solved",
      "electric_solve yes",
-     {"", "", "-div(e_f grad phi) = rho on the mesh, E = -grad phi",
+     {"", "Jackson 1975", "-div(e_f grad phi) = rho on the mesh, E = -grad phi",
       "order 2 of potential and field; force in a coaxial cell"}},
 };
 
@@ -66,13 +66,9 @@ struct ElectricOptions {
   }
 };
 
-/// Charged and polarisable particles in an electric field E (docs/theory/fields.md).
-///  - dc (7.65-7.70): F = Q E + grad(p.E), M = p x E, p = p_0 + (pi/2) eps_f K d^3 E;
-///  - ac (7.71-7.76): F = (pi/4) eps_f d^3 Re K grad(E_rms^2), M = -(pi/2) eps_f d^3 Im K E_rms^2 n in a field that
-///    turns about n;
-/// E is given, or solved for on the mesh, or the sum of both;
-///  - charges act on each other with Q_i Q_j/(4 pi eps_f r^2).
-/// Columns "charge" (C), and "electric_moment" (C m) where there is a permanent dipole.
+/// Charged and polarisable particles in an electric field that is given, or solved for on the mesh, or the sum of both
+/// (7.65-7.76); charges act on each other. Formulas: `electric_models`. Columns "charge" (C), and "electric_moment" (C
+/// m) where there is a permanent dipole.
 class Electric final : public ForceField {
  public:
   /// Null for `-electric_type none`.

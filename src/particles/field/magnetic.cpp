@@ -105,7 +105,7 @@ void Magnetic::find_moments(FieldStep& step, double* moment) {
         [&](const auto& model) {
           for (int p = 0; p < store.owned; ++p) {
             const int at = sources_.place[p];
-            const Vec3 near = Vec3(neighbours_.x[at], neighbours_.y[at], neighbours_.z[at]) / (4 * pi);
+            const Vec3 near = Vec3(neighbours_.x[at], neighbours_.y[at], neighbours_.z[at]) * (3 / (4 * pi));
             const Vec3 found = model.moment(outside[p] + near, volume_of(store.motion[p].radius));
             change = std::max(change, (found - vec3(&moment[3 * p])).norm());
             largest = std::max(largest, found.norm());
@@ -153,7 +153,7 @@ void Magnetic::act(FieldStep& step) {
       step.external += drawn;
     }
     if (turns) {
-      const Vec3 near = Vec3(neighbours_.x[at], neighbours_.y[at], neighbours_.z[at]) / (4 * pi);
+      const Vec3 near = Vec3(neighbours_.x[at], neighbours_.y[at], neighbours_.z[at]) * (3 / (4 * pi));
       vec3(load.torque) += vacuum_permeability * m.cross(near + (uniform ? everywhere : applied(x, step.time)));
     }
   }

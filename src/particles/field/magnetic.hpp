@@ -1,12 +1,28 @@
 #pragma once
 #include <optional>
 
+#include "base/models.hpp"
 #include "particles/field/given_field.hpp"
 #include "particles/field/magnetisation.hpp"
 #include "particles/force_field.hpp"
 #include "particles/pair_sums.hpp"
 
 namespace silt {
+
+/// What dipoles do to each other and an applied field to them, whatever the model of their moment.
+inline constexpr SwitchedModel magnetic_models[] = {
+    {"pairs",
+     "magnetic_type",
+     {"(7.77-7.80)", "Jackson 1975",
+      "F_ij = 3 mu0/(4 pi r^4) [(m_i.b) m_j + (m_j.b) m_i + (m_i.m_j) b - 5 (m_i.b)(m_j.b) b], M = mu0 m_i x H_ij, "
+      "H_ij = "
+      "[3 b (m_j.b) - m_j]/(4 pi r^3), b the unit vector from j to i; all pairs or up to a cut-off",
+      "head to tail, side by side, oblique; sums over pairs with images; angular momentum of a pair"}},
+    {"applied_field",
+     "magnetic_field",
+     {"(7.77-7.80)", "Jackson 1975", "F = mu0 grad(m.H), M = mu0 m x H",
+      "force of a field gradient; swing of a magnet"}},
+};
 
 /// The options `-magnetic_...` that all models of the moment share.
 struct MagneticOptions {

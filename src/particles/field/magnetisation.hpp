@@ -27,10 +27,10 @@ struct NoMagnetism {
   double largest(double) const { return 0; }
 };
 
-/// m = M_s V along the field: the applied one, or with `local` the one that the neighbours change.
+/// The moment has its full size along the field: the applied one, or with `local` the one that the neighbours change.
 struct SaturatedMagnetism {
   static constexpr const char* name = "saturated";
-  static constexpr ModelNote note = {"(7.77-7.80)", "", "m = M_s V along the field",
+  static constexpr ModelNote note = {"(7.77-7.80)", "Jackson 1975", "m = M_s V along the field",
                                      "head to tail, side by side, oblique; approach of a pair; chains"};
   double magnetisation = 0;
   bool local = false;
@@ -49,10 +49,12 @@ struct SaturatedMagnetism {
   double largest(double volume) const { return magnetisation * volume; }
 };
 
-/// m = chi V H, with the susceptibility chi = M/H_applied of a lone sphere: 3 (mu_r - 1)/(mu_r + 2).
+/// The moment is in proportion to the field. The susceptibility chi is that of a lone sphere in the applied field,
+/// whose own field is part of it.
 struct LinearMagnetism {
   static constexpr const char* name = "linear";
-  static constexpr ModelNote note = {"(7.77-7.80)", "", "m = chi V H, with the neighbours",
+  static constexpr ModelNote note = {"(7.77-7.80)", "Jackson 1975",
+                                     "m = chi V H with H of the neighbours too; chi given, or 3 (mu_r - 1)/(mu_r + 2)",
                                      "two coupled spheres in line and side by side"};
   std::optional<double> susceptibility, permeability;
   void options(OptionGroup& option) {
@@ -71,11 +73,11 @@ struct LinearMagnetism {
   double largest(double) const { return 0; }
 };
 
-/// Superparamagnetic: m = M_s V L(3 chi H/M_s) along H, L(x) = coth x - 1/x; chi V H in weak fields, M_s V in strong
-/// ones (Langevin 1905).
+/// Superparamagnetic (Langevin 1905): in proportion to weak fields, full size in strong ones.
 struct LangevinMagnetism {
   static constexpr const char* name = "langevin";
-  static constexpr ModelNote note = {"(7.77-7.80)", "Langevin 1905", "m = M_s V L(3 chi H/M_s)",
+  static constexpr ModelNote note = {"(7.77-7.80)", "Langevin 1905",
+                                     "m = M_s V L(3 chi H/M_s) along H, the neighbours' too, L(x) = coth x - 1/x",
                                      "both limits; two coupled spheres"};
   double magnetisation = 0, susceptibility = 0;
   void options(OptionGroup& option) {
@@ -114,7 +116,7 @@ struct MagnetisedBody {
 /// A moment that is fixed in the particle and turns with it.
 struct PermanentMagnetism : MagnetisedBody {
   static constexpr const char* name = "permanent";
-  static constexpr ModelNote note = {"(7.77-7.80)", "", "m = M V, turns with the particle",
+  static constexpr ModelNote note = {"(7.77-7.80)", "Jackson 1975", "m = M V, turns with the particle",
                                      "swing in a field, second order; angular momentum of a pair"};
   MomentFollows follows() const { return MomentFollows::body; }
 };
@@ -122,7 +124,7 @@ struct PermanentMagnetism : MagnetisedBody {
 /// A moment that never changes.
 struct FixedMagnetism : MagnetisedBody {
   static constexpr const char* name = "fixed";
-  static constexpr ModelNote note = {"(7.77-7.80)", "", "m = M V, fixed in space",
+  static constexpr ModelNote note = {"(7.77-7.80)", "Jackson 1975", "m = M V, fixed in space",
                                      "force of a field gradient; repulsion of a pair"};
   MomentFollows follows() const { return MomentFollows::nothing; }
 };

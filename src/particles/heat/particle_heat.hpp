@@ -13,6 +13,9 @@ namespace silt {
 
 /// What `-heat_...` switches on.
 inline constexpr SwitchedModel heat_models[] = {
+    {"convection",
+     "heat_particles yes",
+     {"(7.95-7.96)", "Newton 1701", "Q = h A (T_f - T), h = Nu lambda/d", "cooling of a sphere, any step (MFiX)"}},
     {"source", "heat_source", {"(7.95)", "", "m c_p dT/dt = q V", "warming of a sphere"}},
     {"conduction",
      "heat_conduction yes",
@@ -46,8 +49,8 @@ struct HeatOptions {
   }
 };
 
-/// Temperature of the particles (7.95): m c_p dT/dt = h A (T_f - T) + source + contact conduction + radiation. What the
-/// fluid gives is set by the coupling and relaxed exactly within each substep; the rest is taken at its start.
+/// Temperature of the particles (7.95, H1). What the fluid gives is set by the coupling and relaxed exactly within each
+/// substep; the rest is taken at its start.
 ///
 /// Columns: "temperature" (K), "fluid_temperature" (K) and "heat_exchange" (h A, W/K), constant over a fluid step, and
 /// "heat_received" (J) from the fluid since somebody reset it.

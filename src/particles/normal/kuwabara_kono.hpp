@@ -11,16 +11,14 @@
 
 namespace silt {
 
-/// Viscoelastic spheres (7.15), Kuwabara & Kono 1987: F = k x^1.5 + gamma x^0.5 dx/dt, k = 4/3 E_eff sqrt(R_eff).
-/// gamma is given, or by the material's relaxation time A, gamma = 3/2 A k (Brilliantov et al. 1996). The restitution
-/// falls with the impact speed as 1 - C v^(1/5) at low v.
+/// Viscoelastic spheres (7.15), Kuwabara & Kono 1987; gamma is given or by the material's relaxation time A
+/// (Brilliantov et al. 1996). The restitution falls with the fifth root of the impact speed at low speeds.
 struct KuwabaraKono {
   static constexpr const char* name = "kuwabara_kono";
-  static constexpr ModelNote note{
-      "(7.15)", "Kuwabara & Kono 1987; Brilliantov et al. 1996",
-      "F = k x^1.5 + gamma x^0.5 dx/dt, k = 4/3 E_eff sqrt(R_eff); gamma is given, or gamma = 3/2 A k",
-      "restitutions .98854, .94426, .89215, .79755 of x'' = -x^1.5 - c x^0.5 x' for c = .01, .05, .1, .2, and 1 - e ~ "
-      "v^(1/5)"};
+  static constexpr ModelNote note{"(7.15)", "Kuwabara & Kono 1987; Brilliantov et al. 1996",
+                                  "F = k x^1.5 + gamma x^0.5 dx/dt, k as of tsuji; gamma is given, or gamma = 3/2 A k",
+                                  "restitutions .98854, .94426, .89215, .79755 of x'' = -x^1.5 - c x^0.5 x' for c = "
+                                  ".01, .05, .1, .2, and 1 - e ~ v^(1/5)"};
   static constexpr bool extended = false, hertzian = true, hertz_spring = true;
   std::optional<double> root_damping, relaxation_time;
   bool no_attraction = false;

@@ -10,14 +10,15 @@
 
 namespace silt {
 
-/// Contact spring from a continuous potential (7.4-7.6), Langston, Tuzun & Heyes 1994: f = m g (d/c) (d/X)^c, k(X) =
-/// f'' = m g (c + 1) d^(c+1)/X^(c+2), F = k(X) x + gamma dx/dt in contact, gamma = 2 beta sqrt(m k). X is the distance
-/// of the centres, d = R_i + R_j (at a wall: the distance to it, R_i), m the effective mass.
+/// Contact spring from a continuous potential (7.4-7.6), Langston, Tuzun & Heyes 1994. X is the distance of the
+/// centres, d the sum of the radii (at a wall: the distance to it, and R_i), m the effective mass, beta the damping
+/// ratio.
 struct Langston {
   static constexpr const char* name = "langston";
   static constexpr ModelNote note{
       "(7.4-7.6)", "Langston, Tuzun & Heyes 1994",
-      "F = k(X) x + 2 beta sqrt(m k) dx/dt, k = m g (c + 1) d^(c+1)/X^(c+2), m = m_eff",
+      "F = k(X) x + 2 beta sqrt(m k) dx/dt, k = f'' = m g (c + 1) d^(c+1)/X^(c+2) of the potential f = m g (d/c) "
+      "(d/X)^c, m = m_eff",
       "k = m g (c + 1)/d at X = d; restitution exp(-pi beta/sqrt(1 - beta^2)) of soft contacts"};
   static constexpr bool extended = true, hertzian = false, hertz_spring = false, jumps = true;
   double exponent = 36, gravity = 9.81, damping_ratio = 0.05;

@@ -12,13 +12,11 @@
 
 namespace silt {
 
-/// Hertz spring with a constant dashpot (7.11), Lee & Herrmann 1993: F = k x^1.5 + gamma dx/dt, k = 4/3 E_eff
-/// sqrt(R_eff). gamma is given, or as the rate gamma/m_eff, which is what Lee & Herrmann used.
+/// Hertz spring with a constant dashpot (7.11), Lee & Herrmann 1993, who gave its coefficient as the rate gamma/m_eff.
 struct LeeHerrmann {
   static constexpr const char* name = "lee_herrmann";
   static constexpr ModelNote note{
-      "(7.11)", "Lee & Herrmann 1993",
-      "F = k x^1.5 + gamma dx/dt, k = 4/3 E_eff sqrt(R_eff); gamma or gamma/m_eff is given",
+      "(7.11)", "Lee & Herrmann 1993", "F = k x^1.5 + gamma dx/dt, k as of tsuji; gamma or gamma/m_eff is given",
       "the restitution of the scaled equation x'' = -x^1.5 - c x'; faster impacts lose less"};
   static constexpr bool extended = false, hertzian = true, hertz_spring = true, jumps = true;
   std::optional<double> damping, damping_rate;

@@ -13,13 +13,13 @@
 
 namespace silt {
 
-/// Repulsive part of a Lennard-Jones potential (7.1-7.3), Aoki & Akiyama 1995: f = eps [(d/X)^12 - (d/X)^6 + 1/4], F =
-/// eps [12 d^12/X^13 - 6 d^6/X^7] + m_eff gamma dx/dt for X < 2^(1/6) d, where f and F vanish; X is the distance of the
-/// centres, d = R_i + R_j. At a wall X is the distance to it and d = R_i.
+/// Repulsive part of a Lennard-Jones potential f, which vanishes with its force where it ends (7.1-7.3), Aoki & Akiyama
+/// 1995. X is the distance of the centres, d the sum of the radii; at a wall the distance to it, and R_i.
 struct LennardJones {
   static constexpr const char* name = "lennard_jones";
   static constexpr ModelNote note{"(7.1-7.3)", "Aoki & Akiyama 1995",
-                                  "F = eps [12 d^12/X^13 - 6 d^6/X^7] + m_eff gamma dx/dt for X < 2^(1/6) d",
+                                  "F = -df/dX + m_eff gamma dx/dt = eps [12 d^12/X^13 - 6 d^6/X^7] + m_eff gamma dx/dt "
+                                  "for X < 2^(1/6) d, f = eps [(d/X)^12 - (d/X)^6 + 1/4]",
                                   "6 eps/d at X = d; closest approach and energy of an elastic collision"};
   static constexpr bool extended = true, hertzian = false, hertz_spring = false, jumps = true;
   std::optional<double> energy;

@@ -12,14 +12,14 @@
 
 namespace silt {
 
-/// Linear spring and dashpot, F = k x + gamma dx/dt (7.7-7.10), Tsuji et al. 1993; Schafer et al. 1996.
+/// Linear spring and dashpot (7.7-7.10), Tsuji et al. 1993; Schafer et al. 1996.
 ///
-/// Either k and gamma are given; or the pair's restitution e with the stiffness k or the contact time t_n, from
-/// e = exp(-pi gamma / (2 m_eff w)), t_n = pi/w, w^2 = k/m_eff - (gamma/(2 m_eff))^2.
+/// Either stiffness and damping are given; or the pair's restitution e with the stiffness or the contact time t_n.
 struct Linear {
   static constexpr const char* name = "linear";
   static constexpr ModelNote note{"(7.7-7.10)", "Tsuji et al. 1993; Schafer et al. 1996",
-                                  "F = k x + gamma dx/dt; k and gamma, or the restitution e with k or the contact time",
+                                  "F = k x + gamma dx/dt; given k and gamma, or e with k or t_n: e = exp(-pi gamma/(2 "
+                                  "m_eff w)), t_n = pi/w, w^2 = k/m_eff - (gamma/(2 m_eff))^2",
                                   "restitution and contact time as given, to second order in the step"};
   static constexpr bool extended = false, hertzian = false, hertz_spring = false, jumps = true;
   std::optional<double> stiffness, damping, contact_time;

@@ -10,17 +10,16 @@
 
 namespace silt {
 
-/// Elastic, perfectly plastic spheres (7.18, 7.25-7.29), Thornton 1997. Up to x_y = R_eff (pi p_y/(2 E_eff))^2 Hertz;
-/// plastic loading F = k x_y^1.5 + pi p_y R_eff (x - x_y); unloading and reloading F = k_ul (x - x_p)^1.5 with
-/// R_ul = R_eff k x_max^1.5/F_max, k_ul = 4/3 E_eff sqrt(R_ul), x_p = x_max - (F_max/k_ul)^(2/3).
+/// Elastic, perfectly plastic spheres (7.18, 7.25-7.29), Thornton 1997: Hertz up to x_y, plastic loading beyond, a
+/// flatter Hertz contact of radius R_ul back and again.
 ///
 /// The yield pressure p_y of a pair is the smaller of its materials'; one without is elastic.
 struct Thornton {
   static constexpr const char* name = "thornton";
   static constexpr ModelNote note{"(7.18), (7.25-7.29)", "Thornton 1997",
-                                  "k x^1.5 up to x_y = R_eff (pi p_y/(2 E_eff))^2; k x_y^1.5 + pi p_y R_eff (x - x_y) "
-                                  "beyond; k_ul (x - x_p)^1.5 back "
-                                  "and again",
+                                  "F = k x^1.5 up to x_y = R_eff (pi p_y/(2 E_eff))^2; loading beyond: k x_y^1.5 + pi "
+                                  "p_y R_eff (x - x_y); unloading and reloading: k_ul (x - x_p)^1.5, k_ul = 4/3 E_eff "
+                                  "sqrt(R_ul), R_ul = R_eff k x_max^1.5/F_max, x_p = x_max - (F_max/k_ul)^(2/3)",
                                   "e = 1 below v_y, above (6 sqrt3/5)^0.5 [1 - (v_y/v)^2/6]^0.5 [(v_y/v)/((v_y/v) + 2 "
                                   "sqrt(6/5 - (v_y/v)^2/5))]^0.25"};
   static constexpr bool extended = false, hertzian = true, hertz_spring = false;

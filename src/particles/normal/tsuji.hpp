@@ -9,9 +9,8 @@
 
 namespace silt {
 
-/// Hertz spring with the damping of Tsuji et al. 1992 (7.16): F = k x^1.5 + gamma x^0.25 dx/dt, k = 4/3 E_eff
-/// sqrt(R_eff) (7.12), gamma = alpha sqrt(m_eff k). The restitution e is independent of the impact speed with alpha =
-/// -sqrt(5) ln e / sqrt(ln^2 e + pi^2), Antypov & Elliott 2011.
+/// Hertz spring with a dashpot that makes the restitution e independent of the impact speed (7.12, 7.16), Tsuji et al.
+/// 1992, its coefficient by Antypov & Elliott 2011.
 struct Tsuji {
   static constexpr const char* name = "tsuji";
   static constexpr ModelNote note{
@@ -22,7 +21,7 @@ struct Tsuji {
       "restitution e at any speed; elastic limit: largest overlap (5 m_eff v^2/(4 k))^(2/5), duration 2.943 x_max/v"};
   static constexpr bool extended = false;
   static constexpr bool hertzian = true;      ///< waves in the particles limit the step
-  static constexpr bool hertz_spring = true;  ///< the spring is 4/3 E_eff sqrt(R_eff) x^1.5, which JKR and DMT build on
+  static constexpr bool hertz_spring = true;  ///< the spring is Hertz's, which JKR and DMT build on
   bool no_attraction = false;
   void options(OptionGroup& option) {
     option("no_attraction", no_attraction, "clip the attractive last part of a damped collision");

@@ -11,18 +11,17 @@
 
 namespace silt {
 
-/// Partially latching spring (7.17, 7.19-7.24), Walton & Braun 1986. Loading F = k_l x; unloading and reloading
-/// F = k_ul (x - x_f) up to the loading line, never below 0, with x_f = x_max (1 - k_l/k_ul), the residual deformation.
+/// Partially latching spring (7.17, 7.19-7.24), Walton & Braun 1986: stiffer back and again than on first loading; x_f
+/// is the residual deformation.
 ///
-/// k_ul is given; or it follows from the pair's restitution, k_ul = k_l/e^2; or it grows with the largest force, k_ul =
-/// k_l + s F_max (7.22), and then e = (1 + s v sqrt(m_eff/k_l))^-1/2 (7.23 as derived; the print lacks the plus sign).
+/// The unloading stiffness is given; or it follows from the pair's restitution; or it grows with the largest force
+/// (7.22), and then the restitution falls with the speed (7.23 as derived; the print lacks the plus sign).
 struct WaltonBraun {
   static constexpr const char* name = "walton_braun";
   static constexpr ModelNote note{
       "(7.17), (7.19-7.24)", "Walton & Braun 1986",
       "F = k_l x loading, k_ul (x - x_f) unloading and reloading, never below 0; x_f = x_max (1 - k_l/k_ul); k_ul "
-      "given, "
-      "k_l/e^2, or k_l + s F_max",
+      "given, or k_l/e^2, or k_l + s F_max",
       "e = sqrt(k_l/k_ul), x_f = v sqrt(m_eff/k_l)(1 - k_l/k_ul), duration (pi/2)(sqrt(m_eff/k_l) + sqrt(m_eff/k_ul)); "
       "variable: e = (1 + s v sqrt(m_eff/k_l))^-1/2"};
   static constexpr bool extended = false, hertzian = false, hertz_spring = false;

@@ -6,7 +6,8 @@
 
 namespace silt {
 
-/// Constant torque mu_r R_eff |F_n| against the relative rolling rate (7.94), at most what stops it within the step.
+/// Torque of constant size against the relative rolling rate w_r (7.94), Zhou et al. 1999. At most what stops the
+/// rolling within the step.
 struct ConstantRolling {
   static constexpr const char* name = "constant";
   static constexpr ModelNote note{"(7.94)", "Zhou et al. 1999", "M = -mu_r R_eff |F_n| w_r/|w_r|",

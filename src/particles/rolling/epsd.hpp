@@ -7,9 +7,8 @@
 
 namespace silt {
 
-/// Elastic-plastic spring and dashpot, Ai et al. 2011, type C: M = -(k_r theta + c_r w_r) with the spring limited at
-/// mu_r R_eff |F_n|, k_r = 2.25 k_n mu_r^2 R_eff^2 (Iwashita & Oda 1998), c_r = 2 eta sqrt(I_r k_r), I_r the rolling
-/// inertia of the pair about the contact; the dashpot acts only below the limit.
+/// Elastic-plastic spring and dashpot, Ai et al. 2011, type C, with the stiffness of Iwashita & Oda 1998; I_r is the
+/// rolling inertia of the pair about the contact; the dashpot acts only below the limit.
 struct EpsdRolling {
   static constexpr const char* name = "epsd";
   static constexpr ModelNote note{

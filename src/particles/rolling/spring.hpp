@@ -12,18 +12,15 @@
 
 namespace silt {
 
-/// Rolling spring and dashpot (7.41-7.43), Marshall 2009; Dominik & Tielens 1995: M = -(k_r xi + gamma_r V_r), with the
-/// displacement xi = int V_r dt turned into the present tangent plane and the rolling velocity
-///   V_r = -R_eff (w_i - w_j) x n - 1/2 (R_j - R_i)/(R_j + R_i) V_t,
-/// acting as the torque n x M on i. Where |xi| exceeds R_eff theta_c, theta_c the critical rolling angle, it is cut
-/// back. k_r is given, or that of a JKR neck, 4 F_c (a/a0)^1.5 = 4 sqrt(F_c E_eff/(3 R_eff)) a^1.5.
+/// Rolling spring and dashpot (7.41-7.43), Marshall 2009; Dominik & Tielens 1995. The rolling displacement xi is turned
+/// into the present tangent plane; beyond R_eff theta_c, theta_c the critical rolling angle, it is cut back. The
+/// stiffness is given, or that of a JKR neck.
 struct SpringRolling {
   static constexpr const char* name = "spring";
   static constexpr ModelNote note{
       "(7.41-7.43)", "Marshall 2009; Dominik & Tielens 1995",
-      "M_r = -(k_r xi + gamma_r V_r), |xi| at most theta_c R_eff; xi = int V_r dt, V_r = -R_eff (w_i - w_j) x n - 1/2 "
-      "(R_j - "
-      "R_i)/(R_j + R_i) V_t; k_r given or 4 F_c (a/a0)^1.5",
+      "M_r = -(k_r xi + gamma_r V_r), acting as n x M_r on i, |xi| at most theta_c R_eff; xi = int V_r dt, V_r = "
+      "-R_eff (w_i - w_j) x n - 1/2 (R_j - R_i)/(R_j + R_i) V_t; k_r given or 4 F_c (a/a0)^1.5",
       "frequency sqrt(k_r R_eff/I_r) of a rocking ball; torque k_r theta_c R_eff when it rolls on"};
   static constexpr bool extended = true;
   std::optional<double> stiffness;

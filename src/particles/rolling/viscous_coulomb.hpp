@@ -9,8 +9,8 @@
 
 namespace silt {
 
-/// Rolling torque that grows with the rate up to a limit (7.44): M = -min(k_rw |w_r|, g_r |F_n|) w_r/|w_r|, g_r a
-/// length. At most what stops the rolling within the step.
+/// Rolling torque that grows with the relative rolling rate w_r up to a limit (7.44), g_r a length. At most what stops
+/// the rolling within the step.
 struct ViscousCoulombRolling {
   static constexpr const char* name = "viscous_coulomb";
   static constexpr ModelNote note{"(7.44)", "Brilliantov & Poschel 1998; Iwashita & Oda 1998",

@@ -8,15 +8,13 @@
 
 namespace silt {
 
-/// No-slip stiffness k_t = 8 G_eff sqrt(R_eff x) with the Coulomb limit (7.34-7.36), Mindlin & Deresiewicz 1953; Tsuji
-/// et al. 1992. The dashpot follows from the same restitution as the normal one: gamma_t = alpha sqrt(2/3 m_eff k_t),
-/// that is gamma_t = 2 sqrt(G_eff/E_eff) gamma_n with the Hertz family.
+/// No-slip stiffness with the Coulomb limit (7.34-7.36), Mindlin & Deresiewicz 1953; Tsuji et al. 1992. The dashpot
+/// follows from the same restitution as the normal one.
 struct Mindlin {
   static constexpr const char* name = "mindlin";
   static constexpr ModelNote note{
       "(7.34-7.36)", "Mindlin & Deresiewicz 1953; Tsuji et al. 1992",
-      "F_t = -(k_t zeta + gamma_t V_t), at most mu |F_n|; k_t = 8 G_eff sqrt(R_eff x), gamma_t = 2 sqrt(G_eff/E_eff) "
-      "gamma",
+      "F_t as of spring_dashpot, at most mu |F_n|; k_t = 8 G_eff sqrt(R_eff x), gamma_t = 2 sqrt(G_eff/E_eff) gamma",
       "Chung & Ooi's oblique impacts; a sliding ball rolls at 5/7 of its speed after 2/7 v/(mu g)"};
   static constexpr bool extended = false;
   std::optional<double> damping_ratio;

@@ -8,8 +8,8 @@
 
 namespace silt {
 
-/// Constant spring without a dashpot (7.31-7.32), Cundall & Strack 1979: F_t = -min(k_t |zeta|, mu |F_n|) zeta/|zeta|;
-/// at the limit zeta is cut back to mu |F_n|/k_t (7.36; the print lacks mu).
+/// Constant spring without a dashpot (7.31-7.32), Cundall & Strack 1979; at the Coulomb limit the spring is cut back
+/// (7.36; the print lacks mu).
 struct SpringTangential {
   static constexpr const char* name = "spring";
   static constexpr ModelNote note{"(7.31-7.32)", "Cundall & Strack 1979",

@@ -11,9 +11,10 @@ namespace silt {
 /// Constant spring and dashpot with the Coulomb limit (7.33), Cundall & Strack 1979.
 struct SpringDashpot {
   static constexpr const char* name = "spring_dashpot";
-  static constexpr ModelNote note{"(7.33), (7.36)", "Cundall & Strack 1979",
-                                  "F_t = -(k_t zeta + gamma_t V_t), at most mu |F_n|; at the limit zeta is cut back",
-                                  "frequency and decay of a stuck contact"};
+  static constexpr ModelNote note{
+      "(7.33), (7.36)", "Cundall & Strack 1979",
+      "F_t = -(k_t zeta + gamma_t V_t), at most mu |F_n|, zeta = int V_t dt; at the limit zeta is cut back",
+      "frequency and decay of a stuck contact"};
   static constexpr bool extended = false;
   std::optional<double> stiffness, damping, damping_ratio;
   void options(OptionGroup& option) {

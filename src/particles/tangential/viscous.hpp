@@ -8,8 +8,8 @@
 
 namespace silt {
 
-/// Sliding friction that grows with the slip up to the Coulomb limit (7.30): F_t = -min(gamma_t |V_t|, mu |F_n|) t.
-/// There is no static friction: a heap collapses.
+/// Sliding friction that grows with the slip up to the Coulomb limit (7.30). There is no static friction: a heap
+/// collapses.
 struct ViscousTangential {
   static constexpr const char* name = "viscous";
   static constexpr ModelNote note{"(7.30)", "Haff & Werner 1986", "F_t = -min(gamma_t |V_t|, mu |F_n|) V_t/|V_t|",

@@ -5,13 +5,10 @@
 
 namespace silt {
 
-/// Incremental slip (7.37-7.38), Walton & Braun 1986: F_t += k_t d(zeta) with
-///   k_t = k_t0 [1 - (F_t - F*)/(mu F_n - F*)]^(1/3) while F_t grows,
-///   k_t = k_t0 [1 - (F* - F_t)/(mu F_n + F*)]^(1/3) while it falls,  k_t0 = k_n (1 - s)/(1 - s/2),
-/// F* the value of F_t at the last reversal (0 at first), scaled with F_n when F_n changes. The stiffness is integrated
-/// over the step in closed form, so F_t does not depend on the size of the increments. In 3D the part of d(zeta) normal
-/// to F_t uses k_t0, and F_t is turned into the present tangent plane first (Walton 1993). k_n is the slope of the
-/// normal spring, s the mean Poisson ratio of the pair.
+/// Incremental slip (7.37-7.38), Walton & Braun 1986. F* is the value of F_t at the last reversal (0 at first), scaled
+/// with F_n when F_n changes. The stiffness is integrated over the step in closed form, so F_t does not depend on the
+/// size of the increments. In 3D the part of d(zeta) normal to F_t uses k_t0, and F_t is turned into the present
+/// tangent plane first (Walton 1993). k_n is the slope of the normal spring, s the mean Poisson ratio of the pair.
 struct WaltonBraunTangential {
   static constexpr const char* name = "walton_braun";
   static constexpr ModelNote note{

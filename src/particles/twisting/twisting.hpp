@@ -10,14 +10,15 @@
 
 namespace silt {
 
-/// Twisting resistance (7.39-7.40), Marshall 2009: M_t = -(k_q int W_t dt + gamma_q W_t) n, W_t = (w_i - w_j).n,
-/// limited at 2/3 mu |F_n| a with a the contact radius; at the limit the spring is cut back. Unless they are given, k_q
-/// = k_t a^2/2 and gamma_q = gamma_t a^2/2 with Mindlin's k_t = 8 G_eff a and gamma_t = 2 sqrt(G_eff/E_eff) gamma_n.
+/// Twisting resistance (7.39-7.40), Marshall 2009, W_t the relative spin along the normal, a the contact radius; at the
+/// limit the spring is cut back. Unless they are given, stiffness and dashpot are those of a disc of radius a that is
+/// held by the no-slip stiffness and dashpot of `mindlin`.
 struct Twisting {
   static constexpr const char* name = "twisting";
   static constexpr ModelNote note{
       "(7.39-7.40)", "Marshall 2009",
-      "M_t = -(k_q int W_t dt + gamma_q W_t), at most 2/3 mu |F_n| a; k_q = 4 G_eff a^3 unless given",
+      "M_t = -(k_q int W_t dt + gamma_q W_t) n, W_t = (w_i - w_j).n, at most 2/3 mu |F_n| a; unless given k_q = k_t "
+      "a^2/2 = 4 G_eff a^3 and gamma_q = gamma_t a^2/2",
       "frequency sqrt(k_q (1/I_i + 1/I_j)); a spinning ball on a plane stops after I w/(2/3 mu m g a)"};
   static constexpr bool extended = true;
   std::optional<double> stiffness, damping;
