@@ -93,6 +93,8 @@ SILT_INLINE unsigned lane_bits(Mask a) {
 }
 #endif
 
+SILT_INLINE bool any_lane(Mask a) { return lane_bits(a) != 0; }
+
 // Lane by lane: only the rarer laws use them, and so each lane gets the bits of the same formula in plain numbers.
 SILT_INLINE Pack cbrt(Pack a) {
   Vector r;

@@ -15,6 +15,9 @@ SILT_INLINE double cbrt(double a) { return __builtin_cbrt(a); }
 SILT_INLINE double exp(double a) { return __builtin_exp(a); }
 SILT_INLINE double log(double a) { return __builtin_log(a); }
 
+/// Whether a comparison holds in any lane.
+SILT_INLINE bool any_lane(bool condition) { return condition; }
+
 template <class Real>
 SILT_INLINE Real larger(Real a, Real b) {
   return select(a > b, a, b);

@@ -7,6 +7,7 @@
 #include "particles/contact.hpp"
 #include "particles/force_jump.hpp"
 #include "particles/materials.hpp"
+#include "particles/normal/hertz.hpp"
 
 namespace silt {
 
@@ -69,7 +70,7 @@ struct Jkr {
     const Real u = root_of_neck(larger(y, least));
     const Real a = sqrt(square) * u * u, cube = u * u * u, pull_off = c.pull_off * radius;
     const Real neck = c.spring * a * a * a / radius - Real(4.0) * pull_off * cube;
-    const Real deep = larger(x, zero), hertz = c.spring * sqrt(radius * deep) * deep;
+    const Real deep = larger(x, zero), hertz = hertz_reading(contact, c.spring, deep, sqrt(radius * deep));
     const Real net = load.force - hertz + select(holds, neck, zero);
     load.contact_radius = select(holds, a, zero);
     load.pull_off = select(holds, pull_off, zero);

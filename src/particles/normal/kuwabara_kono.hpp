@@ -64,7 +64,8 @@ struct KuwabaraKono {
     const Real stiffness = c.stiffness * load.contact_radius;
     load.stiffness = Real(1.5) * stiffness;
     load.damping = c.root_damping * sqrt(overlap) + c.viscosity * load.contact_radius;
-    const Real force = larger(stiffness * overlap + load.damping * contact.approach, c.least_force);
+    const Real spring = hertz_reading(contact, c.stiffness, overlap, load.contact_radius);
+    const Real force = larger(spring + load.damping * contact.approach, c.least_force);
     load.force = select(overlap > zero, force, zero);
     return load;
   }

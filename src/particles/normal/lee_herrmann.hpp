@@ -61,7 +61,8 @@ struct LeeHerrmann {
     load.stiffness = Real(1.5) * stiffness;
     const Real damping = c.damping + c.damping_rate * contact.effective_mass;
     load.damping = select(overlap > zero, damping, zero);
-    const Real force = larger(stiffness * overlap + load.damping * contact.approach, c.least_force);
+    const Real spring = hertz_reading(contact, c.stiffness, overlap, load.contact_radius);
+    const Real force = larger(spring + load.damping * contact.approach, c.least_force);
     load.force = select(overlap > zero, force, zero);
     load.jump = jump_at_meeting(contact, contact.overlap, larger(damping * contact.approach, c.least_force), history);
     return load;

@@ -51,7 +51,8 @@ struct Tsuji {
     const Real stiffness = c.stiffness * load.contact_radius;  // k sqrt(x)
     load.stiffness = Real(1.5) * stiffness;
     load.damping = c.damping * sqrt(contact.effective_mass * stiffness);
-    const Real force = larger(stiffness * overlap + load.damping * contact.approach, c.least_force);
+    const Real spring = hertz_reading(contact, c.stiffness, overlap, load.contact_radius);
+    const Real force = larger(spring + load.damping * contact.approach, c.least_force);
     load.force = select(overlap > zero, force, zero);
     return load;
   }
