@@ -1,7 +1,7 @@
 // Under-expanded jet from a choked nozzle of 0.46 mm into still air: the half plane behind the exit, x the axis, y the
 // distance from it, in mm (-mesh_scale 0.001). Even cells of 12.5 um/n around the first shock cell, growing outwards.
-// gmsh -2 -format msh22 -setnumber n 0.5 inputs/fluid/jet_k_epsilon.geo -o inputs/fluid/jet_k_epsilon.msh
-If(!Exists(n)) n = 1; EndIf // cells each way, of those of 12.5 um; the committed mesh has half of them
+// gmsh -2 -format msh22 -setnumber n 0.66 inputs/fluid/jet_k_epsilon.geo -o inputs/fluid/jet_k_epsilon.msh
+If(!Exists(n)) n = 1; EndIf // cells each way, of those of 12.5 um; the committed mesh has 0.66 of them, 8,008 nodes
 R = 0.23; X[] = {0, 1.25, 30}; Y[] = {0, R, 0.8, 12};
 For j In {0:3}
   For i In {0:2}

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/nodal_matrix.hpp"
+#include "fluid/compressible/surroundings.hpp"
 #include "fluid/initial_state.hpp"
 
 namespace silt {
@@ -30,6 +31,11 @@ void CompressibleOptions::options(OptionGroup& option) {
   option("expansion_sensor", expansion_sensor, "-",
          "factor of the viscosity on expansions by more than a factor of 2.3 within a cell (nozzle lips)",
          non_negative);
+  option(
+      "shock_sensor", shock_sensor, "-",
+      "factor of a first-order viscosity on compressions by more than a factor of 1.2 within a cell: steadies strong "
+      "shocks along mesh lines (Mach disks), which get thicker",
+      non_negative);
   option("initial_temperature", initial_temperature, "K, formula in x, y, z");
 }
 
@@ -72,7 +78,7 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
   conductivity_ = viscosity_ * heat_capacity_ / options_.prandtl;
   step_.axisymmetric = options_.symmetry == "axisymmetric";
   system_.set_axisymmetric(step_.axisymmetric);
-  step_.capturing = {options_.shock_capturing, options_.expansion_sensor};
+  step_.capturing = {options_.shock_capturing, options_.expansion_sensor, options_.shock_sensor};
 
   const VectorExpression velocity("fluid_initial_velocity", fluid.initial_velocity);
   const Expression pressure("fluid_initial_pressure", fluid.initial_pressure);
@@ -140,7 +146,21 @@ void Compressible::choose_units(const Vec3& gravity) {
   for (int i = 0; i < 3; ++i) step_.gravity[i] = i < mesh_.dimension ? gravity[i] / (u0_ * u0_) : 0.0;
 }
 
-void Compressible::set_outside(double time) {
+/// A far field takes what it does not know from the state inside at the start of the step.
+void Compressible::let_surroundings_follow(OpenBoundary& outside, const FacetRule& rule, int q, double dt) const {
+  const size_t m = system_.size();
+  const int dim = mesh_.dimension;
+  const Vec3 n = rule.point[q].area.normalized();
+  if (outside.enters_sonic(step_.law, n.data(), dim)) return;
+  double inside[5] = {};
+  for (int a = 0; a < rule.nodes; ++a)
+    for (size_t k = 0; k < m; ++k)
+      inside[k] += rule.point[q].shape[a] * state_[static_cast<size_t>(rule.node[a]) * m + k];
+  const double length = (mesh_.upper - mesh_.lower).norm();
+  follow_inside(step_.law, outside, inside[0], inside + 1, inside[m - 1], n.data(), dim, dt * u0_, length);
+}
+
+void Compressible::set_outside(double time, double dt) {
   step_.open.assign(boundaries_.facets().size(), {});
   for (size_t f = 0; f < step_.open.size(); ++f) {
     const FacetRule& rule = boundaries_.facets()[f];
@@ -170,6 +190,7 @@ void Compressible::set_outside(double time) {
       if (!(o.p > 0) || !(o.T > 0))
         throw RunError(fmt::format("boundary {}: pressure and temperature must be above 0 at t = {:g} s",
                                    mesh_.boundaries[b], time));
+      if (type == far_field) let_surroundings_follow(o, rule, q, dt);
       step_.open[f].push_back(o);
     }
   }
@@ -178,7 +199,7 @@ void Compressible::set_outside(double time) {
 void Compressible::prepare(double time, double dt, int order) {
   const size_t n = mesh_.nodes, m = system_.size();
   boundaries_.evaluate(time + dt, load_.void_fraction.data());
-  set_outside(time + dt);
+  set_outside(time + dt, dt);
   step_.alpha = load_.void_fraction;
   step_.alpha_rate = load_.void_fraction_rate;
   for (double& v : step_.alpha_rate) v /= u0_;

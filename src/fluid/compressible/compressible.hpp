@@ -26,6 +26,7 @@ struct CompressibleOptions {
   std::string march = "time";
   double shock_capturing = 1;
   double expansion_sensor = 1;
+  double shock_sensor = 0;
   std::string initial_temperature = "0";
   void options(OptionGroup& option);
 };
@@ -67,7 +68,8 @@ class Compressible final : public Fluid {
   void choose_units(const Vec3& gravity);
   Bdf difference(double dt, int order) const;
   void prepare(double time, double dt, int order);
-  void set_outside(double time);
+  void set_outside(double time, double dt);
+  void let_surroundings_follow(OpenBoundary& outside, const FacetRule& rule, int q, double dt) const;
   Turbulence::Flow turbulent_flow() const;
   /// k and epsilon in the flow of the step's start; what they take from its energy goes into the step. Returns the
   /// linear iterations.

@@ -29,6 +29,7 @@ struct GasFrozen {
 struct CapturingFactors {
   double capturing = 1;  ///< of the residual-based viscosity; 0: none
   double sensor = 1;     ///< of the viscosity on strong expansions; 0: none
+  double shocks = 0;     ///< of the viscosity on strong compressions; 0: none
 };
 
 /// Finds what is held fixed during a step from the state at its start (compressible.md, C13 to C16): `carried`
@@ -149,11 +150,11 @@ double freeze_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& t
     low[0] = std::min(low[0], cell.state[a].p), high[0] = std::max(high[0], cell.state[a].p);
     low[1] = std::min(low[1], density[a]), high[1] = std::max(high[1], density[a]);
   }
-  if (divergence > 0) {
-    const double ratio = std::max((high[0] - low[0]) / (high[0] + low[0]), (high[1] - low[1]) / (high[1] + low[1]));
-    const double x = std::clamp((ratio - 0.4) / 0.4, 0.0, 1.0);
-    viscosity = std::max(viscosity, factors.sensor * first_order * x * x * (3 - 2 * x));
-  }
+  const double ratio = std::max((high[0] - low[0]) / (high[0] + low[0]), (high[1] - low[1]) / (high[1] + low[1]));
+  const auto ramp = [](double x) { return x <= 0 ? 0.0 : x >= 1 ? 1.0 : x * x * (3 - 2 * x); };
+  const double share =
+      divergence > 0 ? factors.sensor * ramp((ratio - 0.4) / 0.4) : factors.shocks * ramp((ratio - 0.1) / 0.3);
+  viscosity = std::max(viscosity, first_order * share);
   return std::min(viscosity, first_order);
 }
 
