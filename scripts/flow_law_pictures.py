@@ -234,9 +234,65 @@ def draw_polarisation(silt):
     save(figure, "polarisation")
 
 
+def draw_brownian(silt):
+    """Mean square displacement of 1000 spheres of 100 nm that start at rest, and of over-damped ones."""
+    diameter, mu, warm = 1e-7, 0.89e-3, 298.15
+    tau, diffusivity = DENSITY * diameter**2 / (18 * mu), 1.380649e-23 * warm / (3 * np.pi * mu * diameter)
+    figure, axes = panels(1)
+    for damped, colour, label in (("no", "C0", "inertial"), ("yes", "C3", "over-damped")):
+        step, end = 0.25 * tau, 20 * tau
+        with tempfile.TemporaryDirectory(prefix="silt_laws_") as folder:
+            words = [silt, "inputs/models/brownian.yaml", "-time_end", repr(end), "-time_step", repr(step), "-output_interval", repr(step),
+                     "-output_directory", folder, "-brownian_overdamped", damped, "-progress_quiet", "yes", "-expect_kinetic_energy_window", f"0, {end!r}",
+                     "-expect_kinetic_energy_tolerance", "1e9"]
+            if damped == "yes":
+                words += ["-particles_step", repr(step), "-particles_step_override", "yes"]
+            done = subprocess.run(words, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            if done.returncode:
+                sys.exit(done.stdout)
+            places = []
+            for path in sorted(glob.glob(os.path.join(folder, "particles", "*.h5"))):
+                with h5py.File(path) as file:
+                    places.append(file["position"][...][np.argsort(file["id"][...])])
+        moved = np.array(places) - places[0]
+        side = 1e-5
+        moved -= side * np.round(moved / side)
+        spread = (moved**2).sum(axis=2).mean(axis=1)[1:]
+        time = step * np.arange(1, len(places))
+        axes[0].loglog(time / tau, spread / (6 * diffusivity * tau), colour + ".", markersize=3, label=label)
+    fine = np.logspace(np.log10(0.25), np.log10(20), 100)
+    axes[0].loglog(fine, fine, "C3", linewidth=0.7)
+    axes[0].loglog(fine, fine - 2 * (1 - np.exp(-fine)) + 0.5 * (1 - np.exp(-2 * fine)), "C0", linewidth=0.7)
+    axes[0].set(xlabel="t k/m", ylabel="<x^2> k/(6 D m)", title="Brownian motion; lines: closed forms")
+    axes[0].legend(fontsize=6)
+    save(figure, "brownian")
+
+
+def draw_virtual_mass(silt):
+    """Acceleration from rest in a fluid at rest, by the ratio of densities."""
+    ratios = 10 ** np.linspace(-3, 1, 9)
+    step, gained = 1e-6, {"0.5": [], "0": []}
+    for share, values in gained.items():
+        for ratio in ratios:
+            row = Row(silt, step, {"gravity": "[0, 0, -9.81]", "virtual_mass": {"coefficient": share} if share != "0" else None,
+                                   "material": {"bead": {"density": ratio * RHO, "young_modulus": 1e5}}}, {}, np.array([[0.5, 0.05, 0.05, D / 2]]))
+            values.append(row["velocity"][0, 2] / step / 9.81)
+    figure, axes = panels(1)
+    fine = np.logspace(-3, 1, 100)
+    axes[0].semilogx(ratios, gained["0.5"], "C0.", label="C = 0.5")
+    axes[0].semilogx(fine, (1 - fine) / (fine + 0.5), "C0", linewidth=0.7)
+    axes[0].semilogx(ratios, gained["0"], "C3.", label="without")
+    axes[0].semilogx(fine, (1 - fine) / fine, "C3", linewidth=0.7)
+    axes[0].set(xlabel="rho_p/rho", ylabel="acceleration from rest/g", title="virtual mass; lines: closed forms", ylim=(-1.2, 4))
+    axes[0].legend(fontsize=6)
+    save(figure, "virtual_mass")
+
+
 def draw(silt):
     draw_drag(silt)
     draw_lift_and_torque(silt)
     draw_thermophoresis(silt)
     draw_heat(silt)
     draw_polarisation(silt)
+    draw_brownian(silt)
+    draw_virtual_mass(silt)

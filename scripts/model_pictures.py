@@ -58,6 +58,9 @@ LAWS = {
     "bridge": [
         ("capillary", "normal", {"bridge_type": "capillary", "bridge_surface_tension": 0.07, "bridge_liquid_content": 0.01, "law_table_depth": 2e-6,
                                  "law_table_speed": 0.02, "material_bead_restitution": 1}, (-2e-7, 2.2e-4)),
+        ("capillary, Willett", "normal", {"bridge_type": "capillary", "bridge_surface_tension": 0.07, "bridge_liquid_content": 0.01, "law_table_depth": 2e-6,
+                                          "bridge_force": "willett", "bridge_rupture": "willett", "law_table_speed": 0.02,
+                                          "material_bead_restitution": 1}, (-2e-7, 2.2e-4)),
         ("capillary, viscous", "normal", {"bridge_type": "capillary", "bridge_surface_tension": 0.07, "bridge_liquid_content": 0.01, "law_table_depth": 2e-6,
                                           "bridge_viscosity": 1e-3, "bridge_roughness": 1e-5, "law_table_speed": 0.02,
                                           "material_bead_restitution": 1}, (-2e-7, 2.2e-4)),

@@ -38,7 +38,9 @@ def switches(page):
             group, _, key = option.partition("_") if option != "virtual_mass_coefficient" else ("virtual_mass", "_", "coefficient")
             begin = rf"^{group}:[^\n]*(?:\n  [^\n]*)*?\b{key}:"
             if option == "gravity":  # a weight, in a fluid
-                begin = r"\A(?=[\s\S]*^fluid: \{type: (?!none))[\s\S]*^gravity: \[[^\]]*[1-9]"
+                begin = r"\A(?=[\s\S]*^fluid: \{(?!type: none))[\s\S]*^gravity: \[[^\]]*[1-9]"
+            if option == "fluid_pressure":  # or the gradient that drives a flow
+                begin = rf"(?:{begin}|^fluid:[^\n]*\bpressure_gradient:)"
             yield slot, name, begin + (rf"\s*{value}\b" if value else "")
 
 

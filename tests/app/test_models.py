@@ -3,9 +3,11 @@
 """`silt -models` lists every law by slot, name, equation and source; a law of the chapter that is missing fails, and so
 does one that no case of `scripts/verify models` verifies."""
 import os
+import re
 import subprocess
 import sys
 
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts"))
 from models_page import declared, verifying  # noqa: E402
 
@@ -34,8 +36,20 @@ LAWS = {
     "coupling": "pressure_gradient viscous_stress buoyancy",
     "heat": "source conduction radiation",
 }
+# What a fluid does to particles, which a case must verify in a prescribed flow and another in one that is solved for.
+IN_FLOWS = ("drag", "saffman", "magnus", "viscous_torque", "thermophoresis", "dispersion", "virtual_mass", "coupling")
 # Slots whose laws must name the paper they come from, `none` apart.
 SOURCED = ("normal", "tangential", "twisting", "rolling", "adhesion", "dlvo", "bridge", "interfacial", "lubrication", "drag", "saffman", "magnus", "viscous_torque", "thermophoresis", "dispersion", "nusselt", "magnetic")
+
+
+def flow_of(case):
+    """prescribed, none or solved: the fluid of a case."""
+    for folder in ("models", "verification"):
+        path = os.path.join(ROOT, "inputs", folder, case + ".yaml")
+        if os.path.exists(path):
+            found = re.search(r"^fluid:[^\n]*?\btype: (prescribed|none|compressible)", open(path).read(), re.M)
+            return found[1] if found and found[1] != "compressible" else "solved"
+    return "none"
 
 
 def main():
@@ -48,10 +62,14 @@ def main():
     nameless = [f"{slot} {name}" for (slot, name), rest in there.items() if slot in SOURCED and name != "none" and not any(c.isdigit() for c in rest)]
     verified = verifying(declared(sys.argv[1]))
     unverified = [f"{slot} {name}" for slot, name in there if name != "none" and (slot, name) not in verified]
-    for what, laws in (("not in -models", missing), ("without a source", nameless), ("without a case of scripts/verify models", unverified)):
+    flows = {key: {flow_of(case) for case in cases} for key, cases in verified.items()}
+    dry = [f"{slot} {name}" for slot, name in there if slot in IN_FLOWS and name != "none" and "prescribed" not in flows.get((slot, name), ())]
+    still = [f"{slot} {name}" for slot, name in there if slot in IN_FLOWS and name != "none" and "solved" not in flows.get((slot, name), ())]
+    for what, laws in (("not in -models", missing), ("without a source", nameless), ("without a case of scripts/verify models", unverified),
+                       ("without a case in a prescribed flow", dry), ("without a case in a solved flow", still)):
         for law in laws:
             print(f"{law} is {what}")
-    return 1 if missing or nameless or unverified else 0
+    return 1 if missing or nameless or unverified or dry or still else 0
 
 
 if __name__ == "__main__":

@@ -48,6 +48,32 @@ TEST_CASE("A liquid bridge pulls with 4 pi R sigma cos(theta) in contact, less a
   CHECK(pull(1e-5, 0.02) == 0);  // dry
 }
 
+TEST_CASE("Willett's bridge has the forces and the rupture distance of his formulas, and the force of Yade's check",
+          "[particles]") {
+  struct Spheres {
+    double r1, r2, volume, tension, degrees;
+  };
+  const auto check = [](const Spheres& s, const std::vector<std::pair<double, double>>& forces) {
+    const double radius = s.r1 * s.r2 / (s.r1 + s.r2);
+    CapillaryBridge law;
+    law.surface_tension = s.tension, law.liquid_content = 0.01, law.contact_angle = s.degrees;
+    law.force_law = law.rupture = "willett";
+    const auto constants = law.constants({});
+    for (const auto& [gap, force] : forces) {
+      Contact<double> contact{};
+      contact.overlap = -gap, contact.effective_radius = radius;
+      CHECK(CapillaryBridge::force<double>(contact, constants, {0.5 * s.volume, 0.5 * s.volume, 0, 0}) ==
+            Approx(-force).epsilon(2e-5));
+    }
+    return law.rupture_distance(s.volume, radius, 0);
+  };
+  // Willett et al. 2000, eq. 12, in the values of Yade's check, and spheres of 1 mm with 0.01 ul of water.
+  check({19e-6, 32.5e-6, 1.2e-18, 0.024, 10}, {{2.49e-7 - 1e-5 * 51.5e-6, 6.78192e-7}});
+  CHECK(check({1e-3, 1e-3, 1e-11, 0.0728, 0},
+              {{0, 4.5742e-4}, {1e-5, 4.0479e-4}, {5e-5, 2.1275e-4}, {1e-4, 1.0053e-4}}) ==
+        Approx(2.2009e-4).epsilon(2.5e-5));
+}
+
 TEST_CASE("A bridge takes its liquid from both films and gives it back where it breaks", "[particles]") {
   for (const bool printed : {false, true}) {
     BoxCase setup;

@@ -13,22 +13,25 @@
 
 namespace silt {
 
-/// Liquid bridges: capillary force (7.54-7.55), Maugis 1987 (the print lacks sigma); viscous force (7.57), Matthewson
-/// 1988, with the gap not below the roughness. A bridge forms on contact and breaks (7.56) as in Lian et al. 1993 and
-/// Pitois et al. 2000, or as printed; the capillary number Ca of the speed of parting counts at most 1.
-/// liquid_exchange.hpp makes and breaks the bridges and keeps account of the liquid.
+/// Liquid bridges: capillary force (7.54-7.55), Maugis 1987 (the print lacks sigma), or Willett et al. 2000; viscous
+/// force (7.57), Matthewson 1988, with the gap not below the roughness. A bridge forms on contact and breaks (7.56) as
+/// in Lian et al. 1993 and Pitois et al. 2000, or as printed, or as in Willett et al. 2000; the capillary number Ca of
+/// the speed of parting counts at most 1. liquid_exchange.hpp makes and breaks the bridges and keeps account of the
+/// liquid.
 struct CapillaryBridge {
   static constexpr const char* name = "capillary";
-  static constexpr ModelNote note{"(7.54-7.57)", "Maugis 1987; Matthewson 1988; Lian et al. 1993; Pitois et al. 2000",
-                                  "F = -4 pi R_eff sigma cos(theta) G + 6 pi mu R_eff^2 G^2 (dx/dt)/h, G = 1 - (1 + "
-                                  "V/(pi R_eff h^2))^-0.5, 1 in contact; breaks at h = (1 + theta/2)(1 + sqrt(Ca)) "
-                                  "V^(1/3), Ca = mu |v_n|/sigma, or with V/(4 R_eff^2) in place of V^(1/3)",
-                                  "force and rupture distance of a pair drawn apart; liquid of films and bridges "
-                                  "constant to round-off on any ranks"};
+  static constexpr ModelNote note{
+      "(7.54-7.57)", "Maugis 1987; Willett et al. 2000; Matthewson 1988; Lian et al. 1993; Pitois et al. 2000",
+      "F = -4 pi R_eff sigma cos(theta) C + 6 pi mu R_eff^2 G^2 (dx/dt)/h, C = G = 1 - (1 + V/(pi R_eff h^2))^-0.5, 1 "
+      "in contact, or Willett: C = 1/(1 + 1.05 s + 2.5 s^2), s = h (2 R_eff/V)^0.5; breaks at h = (1 + theta/2)(1 + "
+      "sqrt(Ca)) V^(1/3), Ca = mu |v_n|/sigma, or with V/(4 R_eff^2) in place of V^(1/3), or Willett: V^(1/3) + 0.1 "
+      "V^(2/3)/(2 R_eff)",
+      "force and rupture distance of a pair drawn apart; figures of Willett et al.; liquid of films and bridges "
+      "constant to round-off on any ranks"};
   static constexpr bool extended = false, jumps = true;
   std::optional<double> surface_tension, roughness, liquid_content;
   double contact_angle = 0, viscosity = 0;
-  std::string rupture = "lian";
+  std::string force_law = "maugis", rupture = "lian";
   void options(OptionGroup& option) {
     option("surface_tension", surface_tension, "N/m", "sigma of the liquid", positive);
     option("contact_angle", contact_angle, "degrees", "theta", Range{0, 90, false, true});
@@ -36,8 +39,11 @@ struct CapillaryBridge {
     option("roughness", roughness, "m", "least gap in the viscous force; needed with viscosity", positive);
     option("liquid_content", liquid_content, "-", "volume of the film of a new particle over the particle's volume",
            positive);
-    option("rupture", rupture, {"lian", "printed"},
-           "distance at which a bridge breaks: with V^(1/3), or with V/(4 R_eff^2) as printed in the book");
+    option("force", force_law, {"maugis", "willett"},
+           "capillary force over the gap: Maugis 1987 or Willett et al. 2000");
+    option(
+        "rupture", rupture, {"lian", "printed", "willett"},
+        "distance at which a bridge breaks: with V^(1/3), or with V/(4 R_eff^2) as printed in the book, or Willett's");
   }
   void check() const {
     if (!surface_tension) throw UserError("-bridge_type capillary needs -bridge_surface_tension (N/m, positive)");
@@ -53,10 +59,11 @@ struct CapillaryBridge {
     Real tension;    ///< N/m, 4 pi sigma cos(theta)
     Real viscosity;  ///< Pa s, 6 pi mu
     Real roughness;  ///< m
+    Real willett;    ///< 1 for Willett's force, 0 for Maugis'
   };
   Constants<double> constants(const PairProperties&) const {
     return {4 * std::numbers::pi * *surface_tension * std::cos(theta()), 6 * std::numbers::pi * viscosity,
-            roughness.value_or(1e-9)};
+            roughness.value_or(1e-9), force_law == "willett" ? 1.0 : 0.0};
   }
   template <class Real>
   struct History {
@@ -73,12 +80,17 @@ struct CapillaryBridge {
     const Real wide = volume / (Real(std::numbers::pi) * radius * gap * gap);
     const Real shape = select(contact.overlap >= zero, one, one - one / sqrt(one + wide));
     const Real viscous = c.viscosity * radius * radius * shape * shape * contact.approach / larger(gap, c.roughness);
-    return select(volume > zero, viscous - c.tension * radius * shape, zero) + history.jump;
+    const Real s = larger(zero - contact.overlap, zero) * sqrt(Real(2.0) * radius / volume);
+    const Real pull = select(c.willett > zero, one / (one + s * (Real(1.05) + Real(2.5) * s)), shape);
+    return select(volume > zero, viscous - c.tension * radius * pull, zero) + history.jump;
   }
 
   /// m, gap at which a bridge of volume V between R_eff breaks, at the capillary number Ca.
   double rupture_distance(double volume, double radius, double capillary_number) const {
-    const double size = rupture == "lian" ? std::cbrt(volume) : volume / (4 * radius * radius);
+    const double length = std::cbrt(volume);
+    const double size = rupture == "lian"      ? length
+                        : rupture == "willett" ? length + 0.1 * length * length / (2 * radius)
+                                               : volume / (4 * radius * radius);
     return (1 + theta() / 2) * (1 + std::sqrt(std::min(capillary_number, 1.0))) * size;
   }
   double capillary_number(double speed) const { return viscosity * std::abs(speed) / *surface_tension; }
@@ -100,7 +112,7 @@ struct CapillaryBridge {
   double reach(const Constants<double>&, const Encounter& e) const {
     return rupture_distance(bridge_volume(e), e.radius, viscosity > 0 ? 1 : 0);
   }
-  /// N/m, steepest slope of the capillary force, at touching.
+  /// N/m, steepest slope of Maugis' force, at touching; Willett's is nowhere steeper.
   double slope(const Constants<double>& c, const Encounter& e) const {
     return c.tension * e.radius * std::sqrt(std::numbers::pi * e.radius / bridge_volume(e));
   }
