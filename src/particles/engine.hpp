@@ -68,7 +68,7 @@ class Engine {
   void add(const std::vector<Seed>& seeds);
   ParticleStep advance(double time, double dt);
   void supply(double time, double dt);
-  /// Lets the particles fall without fluid until the options say they are at rest.
+  /// Lets the particles fall without fluid until the options say they are at rest; those held fixed are then.
   void settle(const SettleOptions& options);
 
   const ContactLaws& laws() const { return laws_; }
@@ -130,6 +130,7 @@ class Engine {
   void add_wall_impulses(double h);
   /// Adds the force fields' part to the present loads.
   void act_fields(double time, double dt);
+  void come_to_rest(const SettleOptions& options);
   /// Temperatures of held particles, in steps that conduction allows.
   void heat_held(double time, double dt);
   /// Takes the contacts' memories out of the lists, whose indices are about to change.

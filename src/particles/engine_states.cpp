@@ -11,7 +11,13 @@
 namespace silt {
 
 void Engine::settle(const SettleOptions& options) {
-  if (options.time <= 0 || total == 0) return;
+  if (options.time > 0 && total > 0) come_to_rest(options);
+  if (!options_.fixed) return;
+  for (int p = 0; p < store.owned; ++p)  // what is held has no velocity of a file or of settling to give up later
+    for (int d = 0; d < 3; ++d) store.motion[p].velocity[d] = store.motion[p].spin[d] = 0;
+}
+
+void Engine::come_to_rest(const SettleOptions& options) {
   settling_ = true;
   laws_.scale_friction(options.friction_factor);
   started_ = false;

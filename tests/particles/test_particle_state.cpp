@@ -44,7 +44,9 @@ TEST_CASE("Held particles stay where they are and pass on to their support what 
   BoxCase setup = gas_case();
   setup.set("particles_fixed", "yes");
   BoxRun run(setup);
-  run.particles.add(gas(4, Vec3::Zero(), Vec3::Constant(8e-3), 0.5e-3, 0));
+  run.particles.add(gas(4, Vec3::Zero(), Vec3::Constant(8e-3), 0.5e-3, 0.3));  // of a file, say: with velocities
+  run.particles.settle();
+  CHECK(run.particles.momentum().norm() == 0);
   const auto before = gather(run.particles);
   for (int i = 0; i < run.particles.owned(); ++i) {
     FluidAction& action = run.particles.fluid_action(i);
