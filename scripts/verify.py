@@ -24,7 +24,8 @@ under `expect:`; the solver itself compares. An error is relative unless the cas
 
 
 class Case:
-    """An options file with `expect:`; its header may say `# short` and `# ranks: N`.
+    """An options file with `expect:`; its header may say `# short`, `# ranks: N` and `# hours`: a case that runs only when
+    the pattern is its name.
 
     An order of convergence is expected by the comments
       # order: <column of errors.csv> <order> ...
@@ -42,6 +43,7 @@ class Case:
         text = open(os.path.join(ROOT, path)).read()
         self.expects = re.search(r"^expect:", text, re.M) is not None
         self.short = re.search(r"^#\s*short\s*$", text, re.M) is not None
+        self.hours = re.search(r"^#\s*hours\s*$", text, re.M) is not None
         orders = re.search(r"^#\s*order:(.*)$", text, re.M)
         words = orders.group(1).split() if orders else []
         self.orders = list(zip(words[::2], map(float, words[1::2])))
@@ -158,6 +160,7 @@ def main():
 
     known = find_cases()
     cases = [case for case in known if arguments.pattern in case.path and (case.short or not arguments.short)]
+    cases = [case for case in cases if not case.hours or arguments.pattern == case.name]
     if arguments.list:
         for case in cases:
             print(case.path, "short" if case.short else "")

@@ -135,6 +135,7 @@ template <class ContactAt>
 void EnergyLedger::find_elastic(const ContactLaws& laws, int count, ContactAt&& contact_at, Elastic& elastic) const {
   elastic.force.assign(count, 0);
   elastic.energy.assign(count, 0);
+  elastic.damped.assign(count, 1);
   const int materials = laws.setup().materials;
   std::visit(
       [&](const auto& model) {
@@ -150,10 +151,14 @@ void EnergyLedger::find_elastic(const ContactLaws& laws, int count, ContactAt&& 
         for (int k = 0; k < count; ++k) {
           int pair = 0;
           Contact<double> contact = contact_at(k, pair);
-          contact.approach = 0;
           if constexpr (has_spring<Model>) {
             History none{};
-            elastic.force[k] = Model::template load<double>(contact, constants[pair], none).force;
+            const auto at_speed = [&](double approach) {
+              contact.approach = approach;
+              return Model::template load<double>(contact, constants[pair], none).force;
+            };
+            elastic.damped[k] = at_speed(1) != at_speed(-1);
+            elastic.force[k] = at_speed(0);
             if (!elastic.potential || contact.overlap <= 0) continue;
             // With the overlap x t^2 the forces of the laws are smooth in t.
             const double x = contact.overlap, distance = contact.distance + x;
@@ -200,7 +205,7 @@ void EnergyLedger::add_pairs(const EnergyStep& step, Work& power, double& stored
     const Vec3& n = normals[k];
     const int i = step.contacts.contact_i()[k], j = step.contacts.contact_j()[k];
     const bool both[2] = {i < store.owned, j < store.owned};
-    const double elastic = elastic_.potential || elastic_.force[k] != 0 ? elastic_.force[k] : on_i.normal;
+    const double elastic = elastic_.of(k, on_i.normal);
     const double give = 0.5 * (store.motion[i].radius + store.motion[j].radius - distances[k]);
     for (int side = 0; side < 2; ++side) {
       if (!both[side]) continue;
@@ -232,7 +237,7 @@ void EnergyLedger::add_walls(const EnergyStep& step, Work& power, double& stored
   for (int k = 0; k < count; ++k) {
     const WallPoint& point = points[k];
     const Exerted on(wall_trace_.data(), wall_stride_, k);
-    const double elastic = elastic_.potential || elastic_.force[k] != 0 ? elastic_.force[k] : on.normal;
+    const double elastic = elastic_.of(k, on.normal);
     const Vec3 n = vec3(point.normal), wall = vec3(point.velocity);
     Vec3 velocity, spin;
     working_motion(step, point.particle, velocity, spin);

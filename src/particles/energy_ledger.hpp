@@ -77,7 +77,11 @@ class EnergyLedger {
   /// Force at rest (N) and potential (J) of the normal law at every contact.
   struct Elastic {
     std::vector<double> force, energy;
+    std::vector<char> damped;  ///< whether the force depends on which way the surfaces move
     bool potential = true;
+    /// Elastic part (N) of what the law exerted at contact k: all of it without a dashpot (its reading may take off an
+    /// error of the step, which its value at rest does not know).
+    double of(int k, double exerted) const { return damped[k] && (potential || force[k] != 0) ? force[k] : exerted; }
   };
   template <class ContactAt>
   void find_elastic(const ContactLaws& laws, int count, ContactAt&& contact_at, Elastic& elastic) const;
