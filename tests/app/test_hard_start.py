@@ -5,9 +5,10 @@ temperature above zero, and so does the march in time by first-order steps; wher
 with the reason and leaves the last good state as a readable checkpoint."""
 import csv
 import os
-import subprocess
 import sys
 import tempfile
+
+from one_case import run, write_case
 
 CASE = """\
 mesh: {type: box, cell: quadrilateral, lower: [0, 0, 0], upper: [0.007, 0.0035, 0], cells: [28, 14]}
@@ -34,17 +35,10 @@ progress: {quiet: yes}
 """
 
 
-def run(silt, folder, *options):
-    done = subprocess.run([silt, "case.yaml", *options], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          text=True, timeout=300)
-    return done.returncode, done.stdout
-
-
 def main():
     silt = os.path.abspath(sys.argv[1])
     with tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(folder, "case.yaml"), "w") as file:
-            file.write(CASE)
+        write_case(folder, CASE)
         for march in ("steady", "time"):
             code, text = run(silt, folder, "-fluid_march", march)
             assert code == 0, text

@@ -4,9 +4,10 @@
 before that step is there to go on from."""
 import csv
 import os
-import subprocess
 import sys
 import tempfile
+
+from one_case import run, write_case
 
 CASE = """\
 mesh: {type: box, lower: [0, 0, 0], upper: [0.01, 0.01, 0.01], cells: [4, 4, 4]}
@@ -20,17 +21,10 @@ progress: {quiet: yes}
 """
 
 
-def run(silt, folder, *options):
-    done = subprocess.run([silt, "case.yaml", *options], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          text=True, timeout=300)
-    return done.returncode, done.stdout
-
-
 def main():
     silt = os.path.abspath(sys.argv[1])
     with tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(folder, "case.yaml"), "w") as file:
-            file.write(CASE)
+        write_case(folder, CASE)
         code, text = run(silt, folder)
         assert code == 1 and "not a number" in text and "t = 0.005 s" in text and "last_good.h5" in text, (code, text)
         good = os.path.join(folder, "out", "last_good.h5")
