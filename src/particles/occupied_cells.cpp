@@ -11,7 +11,7 @@ OccupiedCells::OccupiedCells(const Extent& extent, double reach) {
   for (double width = least;; width *= 1.25) {
     double cells = 1;
     for (int d = 0; d < 3; ++d) {
-      count_[d] = static_cast<long>(std::min(std::floor((extent.upper[d] - extent.lower[d]) / width), 1e6)) + 3;
+      count_[d] = static_cast<long>(std::min(std::floor((extent.upper[d] - extent.lower[d]) / width), 1e15)) + 3;
       lower_[d] = extent.lower[d];
       inverse_[d] = 1 / width;
       cells *= static_cast<double>(count_[d] - 2);

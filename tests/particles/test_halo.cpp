@@ -119,3 +119,13 @@ TEST_CASE("Cells that hold a point are found from every point nearer than the re
       CHECK(missed == 0);
     }
 }
+
+TEST_CASE("A rank's spheres may lie in a row of more than a million cells") {
+  const double end[3] = {2e6, 0, 0}, beside[3] = {2e6 - 5, 0, 0};
+  OccupiedCells cells({{0, 0, 0}, {2e6, 0, 0}, 1e6}, 1);
+  REQUIRE(64 * cells.bits().size() > 2'000'000);
+  cells.mark(end);
+  cells.spread();
+  CHECK(cells.near(end, periods_of(false, false, false)));
+  CHECK_FALSE(cells.near(beside, periods_of(false, false, false)));
+}

@@ -10,7 +10,6 @@
 #include "particles/particles.hpp"
 
 namespace silt {
-namespace {}  // namespace
 
 std::unique_ptr<ParticleHeat> ParticleHeat::create(Options& options, const Materials& materials, Columns& columns) {
   HeatOptions chosen;
