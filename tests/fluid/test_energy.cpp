@@ -37,6 +37,7 @@ double manufactured(const std::string& cell, int n, const std::string& scheme) {
   auto settings = box(cell, n, scheme);
   set_all(settings, cell, "type", "velocity");
   set_all(settings, cell, "velocity", "0.5, -0.3, 0");
+  set_all(settings, cell, "temperature_type", "given");
   set_all(settings, cell, "temperature_value", "300 + sin(pi*x)*cos(pi*y)*cos(t)");
   const std::string alpha = "(0.6 + 0.2*sin(pi*x)*sin(pi*y))";
   settings.push_back({"fluid_initial_velocity", "0.5/" + alpha + ", -0.3/" + alpha + ", 0"});
@@ -166,8 +167,7 @@ TEST_CASE("fluid that flows through leaves with the heat it was given", "[fluid]
     double in = 0, out = 0;
     for (size_t b = 0; b < names.size(); ++b) (names[b] == "x_max" ? out : in) += flows[b].heat_flow;
     CHECK(out == Approx(-in).epsilon(1e-5));
-    CHECK(flows[std::find(names.begin(), names.end(), "y_min") - names.begin()].heat_flow ==
-          Approx(-60).epsilon(1e-12));
+    CHECK(in == Approx(-60).epsilon(1e-12));  // what enters brings nothing: it is as warm as the reference
   }
 }
 
@@ -197,6 +197,8 @@ TEST_CASE("thermal conditions that make no sense are refused", "[fluid][energy]"
   CHECK_THROWS_WITH(FlowCase(settings), Catch::Contains("-boundary_x_min_temperature_flux has no meaning"));
   settings.back() = {"boundary_x_min_temperature_type", "given"};
   CHECK_THROWS_WITH(FlowCase(settings), Catch::Contains("-boundary_x_min_temperature_value is missing"));
+  settings.back() = {"boundary_x_min_temperature_type", "inflow"};
+  CHECK_THROWS_WITH(FlowCase(settings), Catch::Contains("inflow is for boundaries of type velocity and mass_flow"));
   settings.back() = {"fluid_energy", "no"};
   CHECK_THROWS_WITH(FlowCase(settings),
                     Catch::Contains("-fluid_heat_capacity has no meaning without -fluid_energy yes"));

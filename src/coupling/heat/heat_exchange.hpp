@@ -21,9 +21,10 @@ struct HeatLedger {
   double residual = 0;               ///< largest imbalance of the two pairs, relative to the magnitudes summed
 };
 
-/// The exchange of heat over one fluid step, like that of momentum (docs/theory/coupling.md): particles relax towards
-/// the temperature T^n of the fluid with h A, what they took is the fluid's load, and its linearised rest -response_i
-/// (T^{n+1} - T^n)_i is given to the particles after the fluid's step with H = m c_p (1 - exp(-h A dt/(m c_p))).
+/// The exchange of heat over one fluid step (docs/theory/coupling.md, C17, C18): particles relax towards the
+/// temperature T^n of the fluid with h A, the fluid's load is spread over the nodes by pairs of particle and node, so
+/// that heat goes from warm to cold only, and its linearised rest -response_i (T^{n+1} - T^n)_i is given to the
+/// particles after the fluid's step with H = m c_p (1 - exp(-h A dt/(m c_p))).
 class HeatExchange {
  public:
   HeatExchange(const Mesh& mesh, const std::vector<double>& mass, Particles& particles, Fluid& fluid, Options& options);
@@ -48,7 +49,9 @@ class HeatExchange {
   int temperature_, outside_, exchange_, received_;
   HeatLedger ledger_;
   double exchanged_ = 0;
-  std::vector<double> nodal_, at_particles_, share_;
+  double mean_ = 0;               ///< K, of the fluid's temperature T^n over its nodes
+  std::vector<double> filtered_;  ///< K, T^n less its mean, filtered
+  std::vector<double> nodal_, at_particles_, share_, seen_;
 };
 
 }  // namespace silt

@@ -81,6 +81,7 @@ class BoundaryConditions {
     int count;
     std::array<Vec3, 3> direction;
   };
+  bool compressible() const { return compressible_; }
   /// The constrained nodes of this rank, ascending; the same directions on every rank that shares a node.
   const std::vector<Constraint>& constraints() const { return constraints_; }
   /// [nodes] boundary whose condition the node's velocity takes, -1 where it is free (for slip: the first slip

@@ -25,11 +25,17 @@ TemperatureBoundaries::TemperatureBoundaries(const Mesh& mesh, Options& options,
           fmt::format("-{}_type: on an open boundary heat leaves with the fluid; only {}_value, the temperature of "
                       "fluid that enters, can be given",
                       prefix, prefix));
-    if (read.type.empty()) read.type = inflow && !open ? "given" : "adiabatic";
+    if (read.type == "inflow" && (!inflow || boundaries_.compressible()))
+      throw UserError(
+          fmt::format("-{}_type inflow is for boundaries of type velocity and mass_flow of an incompressible "
+                      "fluid",
+                      prefix));
+    if (read.type.empty()) read.type = !inflow || open ? "adiabatic" : boundaries_.compressible() ? "given" : "inflow";
     Condition c;
     c.kind = read.type == "given"           ? Condition::given
              : read.type == "flux"          ? Condition::flux
              : read.type == "heat_transfer" ? Condition::heat_transfer
+             : read.type == "inflow"        ? Condition::inflow
                                             : Condition::adiabatic;
     const auto check = [&](const char* property, bool allowed, bool required) {
       const std::string option = prefix + "_" + property;
@@ -39,7 +45,8 @@ TemperatureBoundaries::TemperatureBoundaries(const Mesh& mesh, Options& options,
         throw UserError(fmt::format("-{} is missing: the temperature condition of boundary {} is {}", option, name,
                                     enters ? "that of what enters" : read.type));
     };
-    const bool outside = c.kind == Condition::given || c.kind == Condition::heat_transfer || enters;
+    const bool outside =
+        c.kind == Condition::given || c.kind == Condition::heat_transfer || c.kind == Condition::inflow || enters;
     check("value", outside || flow == BoundaryType::pressure, outside);
     check("flux", c.kind == Condition::flux, c.kind == Condition::flux);
     check("coefficient", c.kind == Condition::heat_transfer, c.kind == Condition::heat_transfer);
@@ -49,16 +56,23 @@ TemperatureBoundaries::TemperatureBoundaries(const Mesh& mesh, Options& options,
     c.coefficient = std::make_unique<Expression>(prefix + "_coefficient", read.coefficient);
     conditions_.push_back(std::move(c));
   }
-  find_fixed();
+  std::vector<char> given, entered;
+  for (size_t b = 0; b < conditions_.size(); ++b) {
+    const Condition& c = conditions_[b];
+    given.push_back(c.kind == Condition::given);
+    entered.push_back(c.kind == Condition::inflow ||
+                      (boundaries_.type(static_cast<int>(b)) == BoundaryType::pressure && c.has_value));
+  }
+  fixed_boundary_ = strongest(given);
+  entered_boundary_ = strongest(entered);
+  for (const int boundary : fixed_boundary_) fixed_.push_back(boundary >= 0);
 }
 
-void TemperatureBoundaries::find_fixed() {
-  fixed_.assign(mesh_.nodes, 0);
-  fixed_boundary_.assign(mesh_.nodes, -1);
-  std::vector<int> best(mesh_.nodes, std::numeric_limits<int>::max());
+std::vector<int> TemperatureBoundaries::strongest(const std::vector<char>& has_it) const {
+  std::vector<int> found(mesh_.nodes, -1), best(mesh_.nodes, std::numeric_limits<int>::max());
   std::vector<double> touch(mesh_.nodes);
   for (size_t b = 0; b < conditions_.size(); ++b) {
-    if (conditions_[b].kind != Condition::given) continue;
+    if (!has_it[b]) continue;
     std::fill(touch.begin(), touch.end(), 0.0);
     for (const auto& facet : boundaries_.facets())
       if (facet.boundary == static_cast<int>(b))
@@ -68,10 +82,10 @@ void TemperatureBoundaries::find_fixed() {
     for (int i = 0; i < mesh_.nodes; ++i)
       if (touch[i] > 0 && strength < best[i]) {
         best[i] = strength;
-        fixed_[i] = 1;
-        fixed_boundary_[i] = static_cast<int>(b);
+        found[i] = static_cast<int>(b);
       }
   }
+  return found;
 }
 
 double TemperatureBoundaries::given(int node, double t) const {

@@ -8,13 +8,13 @@ namespace silt {
 
 /// The thermal conditions on all boundaries of the mesh.
 ///
-/// Walls are adiabatic unless told otherwise. Inflows need the temperature of what enters: `velocity` (and `mass_flow`
-/// in incompressible flow) hold it at their nodes, open boundaries bring it with the flow. On `pressure` boundaries it
-/// may be given for fluid that comes in there.
+/// Walls are adiabatic unless told otherwise. Inflows need the temperature of what enters: it comes with the flow, so
+/// that the heat brought in is exact however steep the temperature is behind (Danckwerts 1953), or is held at the nodes
+/// (`given`; `velocity` in compressible flow always). On `pressure` boundaries it may be given for fluid that comes in.
 class TemperatureBoundaries {
  public:
   struct Condition {
-    enum Kind { adiabatic, given, flux, heat_transfer } kind = adiabatic;
+    enum Kind { adiabatic, given, flux, heat_transfer, inflow } kind = adiabatic;
     bool has_value = false;
     std::unique_ptr<Expression> value, flux_density, coefficient;
   };
@@ -27,6 +27,9 @@ class TemperatureBoundaries {
   const std::vector<char>& fixed() const { return fixed_; }
   /// [nodes] the boundary that gives it, of those that meet the one whose flow condition is the strongest; -1: none.
   const std::vector<int>& fixed_boundary() const { return fixed_boundary_; }
+  /// [nodes] the boundary whose fluid that enters there has its temperature: `inflow`, or `pressure` with a value; -1:
+  /// none.
+  const std::vector<int>& entered_boundary() const { return entered_boundary_; }
   /// K, given at the node at time t; only where fixed.
   double given(int node, double t) const;
   /// W and W/K at the nodes: heat - coefficient T is what `flux` and `heat_transfer` give the fluid. `axisymmetric`:
@@ -38,7 +41,8 @@ class TemperatureBoundaries {
   static void refuse(const Mesh& mesh, const Options& options, const std::string& reason);
 
  private:
-  void find_fixed();
+  /// The boundary of the strongest flow condition among those with the property, for each node; -1: none. Collective.
+  std::vector<int> strongest(const std::vector<char>& has_it) const;
   template <class F>
   void for_each_point(double t, F f) const;
 
@@ -46,7 +50,7 @@ class TemperatureBoundaries {
   const BoundaryConditions& boundaries_;
   std::vector<Condition> conditions_;
   std::vector<char> fixed_;
-  std::vector<int> fixed_boundary_;
+  std::vector<int> fixed_boundary_, entered_boundary_;
 };
 
 }  // namespace silt

@@ -10,9 +10,10 @@ struct TemperatureOptions {
   std::string type;
   std::string value = "0", flux = "0", coefficient = "0";
   void options(OptionGroup& option) {
-    option("type", type, {"adiabatic", "given", "flux", "heat_transfer"},
-           "adiabatic: no heat is conducted through (default); given: the temperature is; flux: heat per area and time "
-           "is; heat_transfer: coefficient times the difference to the temperature outside");
+    option("type", type, {"adiabatic", "given", "flux", "heat_transfer", "inflow"},
+           "adiabatic: no heat is conducted through (default of walls); given: the temperature is; flux: heat per area "
+           "and time is; heat_transfer: coefficient times the difference to the temperature outside; inflow: that of "
+           "what enters, heat passes with the flow alone (default of velocity and mass_flow in incompressible flow)");
     option("value", value,
            "K, formula in x, y, z, t: the temperature given, that outside (heat_transfer), or, on a boundary where "
            "fluid may enter, that of what enters");

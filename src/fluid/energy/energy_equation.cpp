@@ -131,8 +131,8 @@ int EnergyEquation::solve(double time, const Bdf& bdf, double dt, const Particle
   for (int i = 0; i < n; ++i) {
     coefficient[i] += transfer[i];
     at_node[i] += heat[i];
-    const int b = boundaries_.pressure_boundary()[i];
-    if (b >= 0 && conditions_[b].has_value && outflow[i] < 0) {
+    const int b = conditions_.entered_boundary()[i];
+    if (b >= 0 && outflow[i] < 0) {
       entering[i] = (*conditions_[b].value)(position(i), end);
       coefficient[i] -= capacity * outflow[i];
       at_node[i] -= capacity * outflow[i] * entering[i];
@@ -151,10 +151,10 @@ int EnergyEquation::solve(double time, const Bdf& bdf, double dt, const Particle
   for (int i = 0; i < mesh_.owned_nodes; ++i) {
     if (conditions_.fixed()[i]) heat_flow_[conditions_.fixed_boundary()[i]] -= held[i];
     if (outflow[i] == 0) continue;
-    const int b = boundaries_.pressure_boundary()[i] >= 0 ? boundaries_.pressure_boundary()[i]
-                                                          : boundaries_.velocity_boundary()[i];
+    const int through = conditions_.entered_boundary()[i], opening = boundaries_.pressure_boundary()[i];
+    const int b = through >= 0 ? through : opening >= 0 ? opening : boundaries_.velocity_boundary()[i];
     if (b < 0) continue;
-    const bool enters = outflow[i] < 0 && boundaries_.pressure_boundary()[i] >= 0 && conditions_[b].has_value;
+    const bool enters = through >= 0 && outflow[i] < 0;
     heat_flow_[b] += capacity * outflow[i] * ((enters ? entering[i] : next_[i]) - options_.reference_temperature);
   }
   conditions_.add_heat_flow(end, next_, heat_flow_);
