@@ -7,10 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <set>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace silt {
 namespace {
@@ -19,7 +20,8 @@ namespace {
 constexpr int quadrilateral_order[4] = {0, 1, 3, 2};
 constexpr int hexahedron_order[8] = {0, 3, 1, 2, 4, 5, 7, 6};
 
-Cell cell_from(DMPolytopeType type) {
+/// Nothing for a cell of another type.
+std::optional<Cell> cell_from(DMPolytopeType type) {
   switch (type) {
     case DM_POLYTOPE_TRIANGLE:
       return Cell::triangle;
@@ -30,9 +32,7 @@ Cell cell_from(DMPolytopeType type) {
     case DM_POLYTOPE_HEXAHEDRON:
       return Cell::hexahedron;
     default:
-      throw UserError(fmt::format(
-          "the mesh contains cells of type '{}'; only triangles, quadrilaterals, tetrahedra and hexahedra are allowed",
-          DMPolytopeTypes[type]));
+      return std::nullopt;
   }
 }
 
@@ -58,17 +58,6 @@ std::vector<PetscInt> vertices_of(DM plex, PetscInt point, PetscInt first_vertex
     if (closure[2 * k] >= first_vertex && closure[2 * k] < last_vertex) vertices.push_back(closure[2 * k]);
   SILT_PETSC(DMPlexRestoreTransitiveClosure(plex, point, PETSC_TRUE, &size, &closure));
   return vertices;
-}
-
-/// A contiguous MPI type of that many doubles, made once.
-MPI_Datatype doubles(int components) {
-  static std::map<int, MPI_Datatype> types;
-  auto [it, added] = types.try_emplace(components, MPI_DOUBLE);
-  if (added && components > 1) {
-    MPI_Type_contiguous(components, MPI_DOUBLE, &it->second);
-    MPI_Type_commit(&it->second);
-  }
-  return it->second;
 }
 
 /// For every point of the plex that another rank holds too: that rank (the owner's for ghosts, one of the holders for
@@ -149,16 +138,27 @@ void Mesh::extract() {
   total_cells = mpi_sum(static_cast<long long>(cells));
   if (total_cells == 0) throw UserError("the mesh has no cells");
 
-  int kind = -1;
+  int kind = -1, strange = -1;
+  bool mixed = false;
   for (PetscInt c = first_cell; c < last_cell; ++c) {
     DMPolytopeType type;
     SILT_PETSC(DMPlexGetCellType(plex_, c, &type));
-    const int here = static_cast<int>(cell_from(type));
-    if (kind >= 0 && kind != here) throw UserError("the mesh mixes cells of several kinds; one kind a mesh is allowed");
+    const auto known = cell_from(type);
+    if (!known) {
+      strange = type;
+      continue;
+    }
+    const int here = static_cast<int>(*known);
+    mixed = mixed || (kind >= 0 && kind != here);
     kind = here;
   }
+  strange = static_cast<int>(mpi_max(strange));
+  if (strange >= 0)
+    throw UserError(fmt::format(
+        "the mesh contains cells of type '{}'; only triangles, quadrilaterals, tetrahedra and hexahedra are allowed",
+        DMPolytopeTypes[strange]));
   cell = static_cast<Cell>(static_cast<int>(mpi_max(kind)));
-  if (mpi_any(kind >= 0 && kind != static_cast<int>(cell)))
+  if (mpi_any(mixed || (kind >= 0 && kind != static_cast<int>(cell))))
     throw UserError("the mesh mixes cells of several kinds; one kind a mesh is allowed");
   dimension = cell_dimension(cell);
   nodes_per_cell = silt::cell_nodes(cell);
@@ -303,8 +303,11 @@ void Mesh::extract_boundaries() {
       on_boundary = on_boundary || value >= 0;
     }
     if (!mpi_any(on_boundary)) continue;
+    if (std::find(names.begin(), names.end(), lower_case(word)) != names.end())
+      throw UserError(
+          fmt::format("two boundaries of the mesh differ by capitals alone, as options do not: '{}'", word));
     labels.push_back(label);
-    names.push_back(word);
+    names.push_back(lower_case(word));
   }
   const bool by_name = !names.empty();
   if (!by_name)
@@ -374,25 +377,6 @@ Vec3 Mesh::centre(int local_cell) const {
   for (int a = 0; a < nodes_per_cell; ++a)
     sum += vec3(&cell_coordinates[3 * (static_cast<size_t>(local_cell) * nodes_per_cell + a)]);
   return sum / nodes_per_cell;
-}
-
-void Mesh::sum_shared(double* values, int components) const {
-  if (mpi_size() == 1 || components == 0) return;
-  SILT_PETSC(PetscSFReduceBegin(node_exchange_, doubles(components), values, values, MPI_SUM));
-  SILT_PETSC(PetscSFReduceEnd(node_exchange_, doubles(components), values, values, MPI_SUM));
-  copy_from_owner(values, components);
-}
-
-void Mesh::copy_from_owner(double* values, int components) const {
-  if (mpi_size() == 1 || components == 0) return;
-  SILT_PETSC(PetscSFBcastBegin(node_exchange_, doubles(components), values, values, MPI_REPLACE));
-  SILT_PETSC(PetscSFBcastEnd(node_exchange_, doubles(components), values, values, MPI_REPLACE));
-}
-
-double Mesh::dot(const double* a, const double* b, int components) const {
-  double sum = 0;
-  for (int i = 0; i < owned_nodes * components; ++i) sum += a[i] * b[i];
-  return mpi_sum(sum);
 }
 
 }  // namespace silt

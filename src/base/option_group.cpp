@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/options.hpp"
+#include "base/text.hpp"
 
 namespace silt {
 namespace {
@@ -34,11 +35,6 @@ std::vector<std::string> split_list(const std::string& text) {
   }
   if (parts.size() == 1 && parts[0].empty()) parts.clear();
   return parts;
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
 }
 
 }  // namespace
@@ -116,6 +112,10 @@ void OptionGroup::operator()(const char* name, InputFile& value, const char* hel
   const std::string origin = options_.origin(full(name));  // file.yaml:12
   const std::filesystem::path given = *text, beside = std::filesystem::path(origin).parent_path() / given;
   if (!std::filesystem::exists(given) && std::filesystem::exists(beside)) value = beside.string();
+  // The record of the run names the file for whoever repeats it from somewhere else.
+  if (std::filesystem::exists(value.c_str()))
+    options_.declare(
+        {full(name), "text", "", "", "", help, std::filesystem::absolute(value.c_str()).lexically_normal(), true});
 }
 
 void OptionGroup::operator()(const char* name, std::string& value, const std::vector<std::string>& allowed,

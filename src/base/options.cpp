@@ -12,6 +12,7 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace silt {
 namespace {
@@ -20,11 +21,6 @@ std::string number_text(double value) { return fmt::format("{:g}", value); }
 
 bool is_number_start(std::string_view text) {
   return text.size() > 1 && (std::isdigit(static_cast<unsigned char>(text[1])) || text[1] == '.');
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
 }
 
 /// PETSc's own option families: a name under one of them that no solver has used yet is not an error of the user
@@ -210,6 +206,15 @@ void Options::refuse_unknown(const Options* catalogue) const {
     throw UserError(fmt::format("unknown option -{} ({}){}", name, given.origin,
                                 hint.empty() ? "; -help lists all" : fmt::format(", did you mean -{}?", hint)));
   }
+}
+
+std::vector<std::pair<std::string, std::string>> Options::undeclared() const {
+  std::vector<std::pair<std::string, std::string>> result;
+  for (const auto& [name, given] : given_)
+    if (std::none_of(entries_.begin(), entries_.end(),
+                     [&word = name](const auto& entry) { return entry.name == word; }))
+      result.emplace_back(name, given.value);
+  return result;
 }
 
 void Options::declare(OptionEntry entry) {

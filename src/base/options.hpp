@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/vector.hpp"
@@ -85,6 +86,8 @@ class Options {
   void refuse_unknown(const Options* catalogue = nullptr) const;
 
   const std::vector<OptionEntry>& entries() const { return entries_; }
+  /// Names and values of what was given and nobody declared: options of PETSc and of features that are off.
+  std::vector<std::pair<std::string, std::string>> undeclared() const;
   void declare(OptionEntry entry);
   /// Text for `-help`, and the body of docs/options.md.
   std::string help_text() const;
@@ -137,7 +140,6 @@ class OptionGroup {
   [[noreturn]] void refuse(const std::string& name, const std::string& text, const std::string& allowed) const;
   double number(const std::string& name, const std::string& text, const char* unit, const Range& range) const;
   int whole(const std::string& name, const std::string& text, const char* unit, const Range& range) const;
-  void record(const std::string& text);
 
   Options& options_;
   std::string prefix_;

@@ -188,6 +188,40 @@ TEST_CASE("A Gmsh file of either format gives the mesh, with its boundaries by n
   }
 }
 
+TEST_CASE("A boundary is known in lower case, as the options that name it are") {
+  const TemporaryDirectory folder;
+  MeshOptions options;
+  options.type = "file";
+  options.file = folder / "square.msh";
+  std::string text = square_of_triangles(true, true);
+  text.replace(text.find("inlet"), 5, "Inlet");
+  std::ofstream(options.file) << text;
+  const Mesh mesh(options);
+  CHECK(std::count(mesh.boundaries.begin(), mesh.boundaries.end(), "inlet") == 1);
+  text.replace(text.find("\"wall\""), 6, "\"INLET\"");
+  std::ofstream(options.file) << text;
+  CHECK_THROWS_WITH(Mesh(options), Catch::Contains("capitals"));
+}
+
+TEST_CASE("A mesh of two kinds of cells is refused on every rank, wherever they are", "[mpi]") {
+  // A row of twenty squares, the last of two triangles.
+  const TemporaryDirectory folder;
+  MeshOptions options;
+  options.type = "file";
+  options.file = folder / "mixed.msh";
+  if (mpi_rank() == 0) {
+    std::ofstream file(options.file);
+    file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n42\n";
+    for (int k = 0; k < 42; ++k) file << k + 1 << ' ' << k / 2 << ' ' << k % 2 << " 0\n";
+    file << "$EndNodes\n$Elements\n21\n";
+    for (int k = 0; k < 19; ++k)
+      file << k + 1 << " 3 2 1 1 " << 2 * k + 1 << ' ' << 2 * k + 3 << ' ' << 2 * k + 4 << ' ' << 2 * k + 2 << '\n';
+    file << "20 2 2 1 1 39 41 42\n21 2 2 1 1 39 42 40\n$EndElements\n";
+  }
+  MPI_Barrier(PETSC_COMM_WORLD);
+  CHECK_THROWS_WITH(Mesh(options), Catch::Contains("several kinds"));
+}
+
 TEST_CASE("A boundary facet without a name is refused") {
   const TemporaryDirectory folder;
   MeshOptions options;

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/options.hpp"
+#include "base/text.hpp"
 #include "particles/insertion/particle_file.hpp"
 
 namespace silt {
@@ -95,7 +96,7 @@ std::vector<FileParticle> read_csv_particles(const std::string& file, const std:
     if (columns.count("wx")) particle.spin = Vec3(number("wx"), number("wy"), number("wz"));
     if (columns.count("material")) {
       const std::string& name = fields[columns["material"]];
-      const auto found = std::find(materials.begin(), materials.end(), name);
+      const auto found = std::find(materials.begin(), materials.end(), lower_case(name));
       if (found == materials.end())
         throw UserError(fmt::format("{}: column 'material': '{}' is not a material; there are {}", place, name,
                                     fmt::join(materials, ", ")));

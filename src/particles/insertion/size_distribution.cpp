@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace silt {
 namespace {
@@ -113,7 +114,7 @@ MaterialChoice::MaterialChoice(const InsertionOptions& options, const std::strin
                                const std::vector<std::string>& materials) {
   if (materials.empty()) throw UserError(fmt::format("-{}: no material is defined (-material_<name>_density)", prefix));
   const auto find = [&](const std::string& name, const char* option) {
-    const auto found = std::find(materials.begin(), materials.end(), name);
+    const auto found = std::find(materials.begin(), materials.end(), lower_case(name));
     if (found != materials.end()) return static_cast<int>(found - materials.begin());
     const std::string hint = nearest(name, materials);
     throw UserError(fmt::format("option -{}_{}: '{}' is not a material; there are {}{}", prefix, option, name,

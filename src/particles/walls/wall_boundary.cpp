@@ -7,13 +7,14 @@
 
 #include "base/error.hpp"
 #include "base/surface_motion.hpp"
+#include "base/text.hpp"
 
 namespace silt {
 
 int wall_material(const std::string& chosen, const std::string& prefix, const Options& options,
                   const std::vector<std::string>& materials) {
   if (chosen.empty()) return static_cast<int>(std::min_element(materials.begin(), materials.end()) - materials.begin());
-  const auto found = std::find(materials.begin(), materials.end(), chosen);
+  const auto found = std::find(materials.begin(), materials.end(), lower_case(chosen));
   if (found != materials.end()) return static_cast<int>(found - materials.begin());
   const std::string hint = nearest(chosen, materials);
   throw UserError(fmt::format("option -{}_material ({}): '{}' is not a material; there are {}{}", prefix,
