@@ -26,7 +26,7 @@ def periods(folder):
     text = open(os.path.join(folder, "run.yaml")).read()
 
     def vector(key):
-        return np.array([float(v) for v in re.search(rf"^mesh_{key}: '([^']*)'", text, re.M)[1].split(",")])
+        return np.array([float(v) for v in re.search(rf"^(?:# )?mesh_{key}: '([^']*)'", text, re.M)[1].split(",")])
 
     lower, upper = vector("lower"), vector("upper")
     return lower, upper - lower, vector("periodic") > 0

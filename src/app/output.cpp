@@ -8,11 +8,11 @@
 
 namespace silt {
 
-Output::Output(const Mesh& mesh, Options& options, bool with_fluid, bool with_particles)
+Output::Output(const Mesh& mesh, Options& options, bool with_fluid, bool with_particles, const std::string& checkpoint)
     : mesh_(mesh), with_fluid_(with_fluid), with_particles_(with_particles) {
   OutputOptions output;
   options.read("output", output);
-  directory_ = std::make_unique<OutputDirectory>(output);
+  directory_ = std::make_unique<OutputDirectory>(output, checkpoint);
 }
 
 void Output::start(const std::string& record) {
@@ -20,8 +20,8 @@ void Output::start(const std::string& record) {
   open_series(record);
 }
 
-void Output::resume(const std::string& record, double time, const std::string& checkpoint) {
-  directory_->resume(record, time, checkpoint);
+void Output::resume(const std::string& record, double time) {
+  directory_->resume(record, time);
   open_series(record);
   last_ = time;
 }
@@ -93,18 +93,21 @@ void Output::write(const Moment& moment) {
 }
 
 std::string record_of(const Options& options) {
-  std::string text = fmt::format("# silt {}, {} rank{}\n", version, mpi_size(), mpi_size() == 1 ? "" : "s");
+  std::string text = fmt::format("# silt {}, {} rank{}; what stands behind # was not given and is the default\n",
+                                 version, mpi_size(), mpi_size() == 1 ? "" : "s");
+  const auto quoted = [](std::string value) {
+    for (size_t at = 0; (at = value.find('\'', at)) != std::string::npos; at += 2) value.insert(at, 1, '\'');
+    return fmt::format("'{}'", value);
+  };
   for (const auto& entry : options.entries()) {
     std::string value = entry.given ? entry.value : entry.fallback;
-    if (value.empty()) continue;
+    if (entry.given && entry.type == "yes/no" && value.empty()) value = "yes";  // a switch
+    if (value.empty() && !entry.given) continue;
     const bool plain =
         entry.type == "number" || entry.type == "integer" || entry.type == "yes/no" || entry.type == "word";
-    if (!plain) {
-      for (size_t at = 0; (at = value.find('\'', at)) != std::string::npos; at += 2) value.insert(at, 1, '\'');
-      value = fmt::format("'{}'", value);
-    }
-    text += fmt::format("{}: {}{}\n", entry.name, value, entry.given ? "" : "  # default");
+    text += fmt::format("{}{}: {}\n", entry.given ? "" : "# ", entry.name, plain ? value : quoted(value));
   }
+  for (const auto& [name, value] : options.undeclared()) text += fmt::format("{}: {}\n", name, quoted(value));
   return text;
 }
 

@@ -12,12 +12,13 @@ namespace silt {
 /// `-output_interval` and at the end.
 class Output {
  public:
-  /// Reads `-output_...` and checks the directory; writes nothing. Collective.
-  Output(const Mesh& mesh, Options& options, bool with_fluid, bool with_particles);
+  /// Reads `-output_...` and checks the directory; writes nothing. `checkpoint`: what the run goes on from, if it does.
+  /// Collective.
+  Output(const Mesh& mesh, Options& options, bool with_fluid, bool with_particles, const std::string& checkpoint = "");
   /// Makes the directory, with `record` (the options of the run, YAML) in it. Collective.
   void start(const std::string& record);
   /// As start(), for a run that goes on from a checkpoint of this time. Collective.
-  void resume(const std::string& record, double time, const std::string& checkpoint);
+  void resume(const std::string& record, double time);
   double last() const { return last_; }
   const OutputDirectory& directory() const { return *directory_; }
 
@@ -38,7 +39,8 @@ class Output {
   double last_ = -1;
 };
 
-/// Every declared option with its value in this run, as YAML that a run can be repeated from.
+/// The options given, and as comments the defaults of the others that this run read: YAML that a run can be repeated
+/// from. (A default that is given may mean something else: a pressure on a wall is refused.)
 std::string record_of(const Options& options);
 
 }  // namespace silt

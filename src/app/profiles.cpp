@@ -62,7 +62,8 @@ void ProfileOptions::options(OptionGroup& option) {
   option("start", start, "s", "time from which the average is taken", non_negative);
 }
 
-Profiles::Profiles(const Mesh& mesh, Options& options, bool with_particles) {
+Profiles::Profiles(const Mesh& mesh, Options& options, bool with_particles)
+    : lower_(mesh.lower), upper_(mesh.upper), periodic_{mesh.periodic[0], mesh.periodic[1], mesh.periodic[2]} {
   for (const auto& name : options.names("profile", Options::declared<ProfileOptions>())) {
     ProfileOptions profile;
     options.read("profile_" + name, profile);
@@ -118,15 +119,33 @@ double Profiles::share(const Item& item, const Box& box, const Vec3& centre, dou
   return volume_in_ring(distance, centre[a], radius, box.ring) / (4.0 / 3.0 * M_PI * radius * radius * radius);
 }
 
+int Profiles::images(const Vec3& centre, double radius, std::array<Vec3, 8>& places) const {
+  int count = 1;
+  places[0] = centre;
+  for (int d = 0; d < 3; ++d) {
+    if (!periodic_[d]) continue;
+    const double length = upper_[d] - lower_[d];
+    const double shift = centre[d] - radius < lower_[d] ? length : centre[d] + radius > upper_[d] ? -length : 0;
+    if (shift == 0) continue;
+    for (int k = 0; k < count; ++k) places[count + k] = places[k] + shift * Vec3::Unit(d);
+    count *= 2;
+  }
+  return count;
+}
+
 void Profiles::sample(const Moment& moment) {
+  std::array<Vec3, 8> places;
   for (auto& item : items_) {
     if (moment.time < item.start || moment.dt <= 0) continue;
     item.time += moment.dt;
     const Particles& particles = *moment.particles;
     for (int i = 0; i < particles.owned(); ++i) {
-      const Vec3 x = particles.position(i), v = particles.velocity(i);
+      const Vec3 v = particles.velocity(i);
+      const double radius = particles.radius(i);
+      const int count = images(particles.position(i), radius, places);
       for (size_t b = 0; b < item.boxes.size(); ++b) {
-        const double part = share(item, item.boxes[b], x, particles.radius(i));
+        double part = 0;
+        for (int k = 0; k < count; ++k) part += share(item, item.boxes[b], places[k], radius);
         if (part <= 0) continue;
         const double weight = part * particles.volume(i) * moment.dt;
         double* sum = &item.sums[width * b];

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,9 @@ struct ProfileOptions {
 /// output.
 ///
 /// The void fraction of a box is 1 - (volume of the spheres inside it)/(volume of the box within the mesh's bounding
-/// box); a sphere that the box cuts counts with the part inside, found by 512 points of equal volume. A ring is cut
-/// exactly and taken whole, also where it reaches beyond the mesh across its axis. Velocities are means by volume over
-/// boxes and time.
+/// box); a sphere that the box cuts counts with the part inside, found by 512 points of equal volume, and one that lies
+/// across a periodic side counts on both. A ring is cut exactly and taken whole, also where it reaches beyond the mesh
+/// across its axis. Velocities are means by volume over boxes and time.
 class Profiles {
  public:
   Profiles(const Mesh& mesh, Options& options, bool with_particles);
@@ -62,8 +63,12 @@ class Profiles {
     std::vector<double> means;  ///< [boxes][4] void fraction, velocity
   };
   static double share(const Item& item, const Box& box, const Vec3& centre, double radius);
+  /// A sphere's place and those of its images across the periodic sides that it reaches beyond; how many there are.
+  int images(const Vec3& centre, double radius, std::array<Vec3, 8>& places) const;
   static void make_ring(const Mesh& mesh, const ProfileOptions& profile, const Item& item, Box& box);
   std::vector<Item> items_;
+  Vec3 lower_, upper_;  ///< m, of the mesh
+  std::array<bool, 3> periodic_;
 };
 
 /// Share of a sphere's volume that lies in the box [lower, upper].

@@ -96,7 +96,7 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
   if (!coupling_ && options.given("brownian_temperature"))
     throw UserError("-brownian_temperature needs a fluid whose drag goes with the noise (-fluid_type)");
   const bool flow = fluid_ != nullptr, grains = particles_ != nullptr;
-  output_ = std::make_unique<Output>(*mesh_, options, flow, grains);
+  output_ = std::make_unique<Output>(*mesh_, options, flow, grains, restart_ ? restart_->path() : "");
   diagnostics_ = std::make_unique<Diagnostics>(*mesh_, options, case_.gravity, fluid_.get(), particles_.get());
   exact_ = std::make_unique<ExactSolution>(*mesh_, options, fluid_.get());
   probes_ = std::make_unique<Probes>(*mesh_, options, fluid_.get());
@@ -180,7 +180,7 @@ int Simulation::run() {
 }
 
 void Simulation::start() {
-  restart_ ? output_->resume(record_of(options_), now_.time, restart_->path()) : output_->start(record_of(options_));
+  restart_ ? output_->resume(record_of(options_), now_.time) : output_->start(record_of(options_));
   if (carried_) {
     reached_ = Balance::imbalance(*mesh_, particles_.get(),
                                   {restart_->number("cost_particle"), restart_->number("cost_cell")});

@@ -20,7 +20,7 @@ constexpr const char* record_name = "run.yaml";
 /// What a run writes into its directory: nothing else is ever removed.
 bool is_ours(const fs::path& relative) {
   static const std::regex pattern(
-      R"((run\.yaml|fluid\.xdmf|particles\.xdmf|(diagnostics|boundaries|ledger)\.csv|(removed|walls|expectations)\.csv|)"
+      R"((run\.yaml|fluid\.xdmf|particles\.xdmf|(diagnostics|boundaries|ledger|errors)\.csv|(removed|walls|energy|expectations)\.csv|)"
       R"((probe|line|profile|wall)_.*\.csv|(checkpoint|last_good|balance)\.h5|(fluid|particles)/(mesh(_\d+)?|\d{6,})\.h5)(\.part)?)");
   return std::regex_match(relative.generic_string(), pattern);
 }
@@ -51,11 +51,14 @@ void OutputOptions::options(OptionGroup& option) {
   option("directory", directory, "where the run writes its files");
   option("interval", interval, "s", "simulated time between two outputs of the series; 0: only the first and the last",
          non_negative);
-  option("overwrite", overwrite, "replace the files of an earlier run in the directory");
+  option("overwrite", overwrite,
+         "replace the files of an earlier run in the directory; no: refuse, unless the run goes on from a checkpoint "
+         "there");
   option("precision", precision, {"double", "single"}, "numbers of the fluid and particle series");
 }
 
-OutputDirectory::OutputDirectory(const OutputOptions& options) : options_(options) {
+OutputDirectory::OutputDirectory(const OutputOptions& options, const std::string& checkpoint)
+    : options_(options), checkpoint_(checkpoint) {
   while (options_.directory.size() > 1 && options_.directory.back() == '/') options_.directory.pop_back();
   refuse(mpi_rank() == 0 ? obstacle() : "");
 }
@@ -77,7 +80,7 @@ std::string OutputDirectory::obstacle() const {
 
   if (!fs::is_directory(options_.directory, code)) return "";
   if (fs::exists(path(record_name), code)) {
-    if (!options_.overwrite)
+    if (!options_.overwrite && !goes_on())
       return fmt::format("the output directory '{}' holds an earlier run and -output_overwrite is no",
                          options_.directory);
   } else if (const auto files = our_files(options_.directory); !files.empty()) {
@@ -107,13 +110,14 @@ void OutputDirectory::prepare(const std::string& record) {
   }
 }
 
-void OutputDirectory::resume(const std::string& record, double time, const std::string& checkpoint) {
-  int there = 0;
-  if (mpi_rank() == 0) {
-    std::error_code code;
-    there = fs::exists(path(record_name), code) &&
-            fs::equivalent(fs::absolute(checkpoint).parent_path(), options_.directory, code);
-  }
+bool OutputDirectory::goes_on() const {
+  std::error_code code;
+  return !checkpoint_.empty() && fs::exists(path(record_name), code) &&
+         fs::equivalent(fs::absolute(checkpoint_).parent_path(), options_.directory, code);
+}
+
+void OutputDirectory::resume(const std::string& record, double time) {
+  int there = mpi_rank() == 0 && goes_on();
   MPI_Bcast(&there, 1, MPI_INT, 0, PETSC_COMM_WORLD);
   if (!there) return prepare(record);
   resumed_ = time;

@@ -60,7 +60,7 @@ def main():
             faults.append(label)
 
     # Beside the fluid the few particles of the bed cost little: it is shared out anew only because it is told to.
-    for name, case, options in (("grains", GRAINS, ["-balance_interval", "0.01"]),
+    for name, case, options in (("grains", GRAINS, ["-balance_interval", "0.01", "-output_overwrite", "no"]),
                                 ("bed", BED, ["-balance_interval", "0.004", "-balance_threshold", "1"])):
         plain, _ = run(silt, case, 1)
         for ranks in (2, 3):

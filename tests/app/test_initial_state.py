@@ -140,6 +140,12 @@ output: {{directory: {out}, interval: 1e-7}}
             inside = x[:, 0] > 1e-9  # what enters there is given
             expect(abs(found["turbulent_energy"] / k - 1)[inside].max() < 1e-9, f"{model}: k differs by {abs(found['turbulent_energy'] / k - 1)[inside].max()}")
             expect(abs(found[second] / exact(k) - 1)[inside].max() < 2e-3, f"{model}: {second} differs by {abs(found[second] / exact(k) - 1)[inside].max()}")
+    # The file is named as seen from the options file, which lies elsewhere than the run.
+    os.makedirs(os.path.join(folder, "cases"), exist_ok=True)
+    with open(os.path.join(folder, "cases", "beside.yaml"), "w") as file:
+        file.write(TURBULENT.format(model="sst_k_omega", cell="triangle", cells="[17, 13]", start="initial_file: ../turbulent/fluid/000000.h5", out="beside"))
+    done = subprocess.run([SILT, os.path.join(folder, "cases", "beside.yaml"), "-check"], cwd="/", stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    expect(done.returncode == 0, f"a file beside the case: {done.stdout[-300:]}")
     done = start_case(TURBULENT, model="sst_k_omega", cell="triangle", cells="[17, 13]", start=from_file + ", initial_turbulent_energy: 1", out="twice")
     expect(done.returncode == 2 and "exclude each other" in done.stdout, f"k by formula and file: {done.stdout[-300:]}")
     laminar = TURBULENT.replace("out/fluid", "out").replace("turbulence: {model}, {start}", "{start}").replace(", turbulence_energy: 0.01, turbulence_viscosity_ratio: 10", "")

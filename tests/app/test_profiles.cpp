@@ -5,6 +5,7 @@
 #include "app/profiles.hpp"
 #include "app/progress.hpp"
 #include "base/error.hpp"
+#include "support/temporary_directory.hpp"
 
 using namespace silt;
 
@@ -48,6 +49,57 @@ TEST_CASE("a sphere's part of a ring: whole, cut in height, cut by its radii, dr
   CHECK(sum == Approx(sphere).epsilon(1e-3));
 }
 
+TEST_CASE("a sphere across a periodic side counts on both, in boxes and in rings about the other axis", "[app][mpi]") {
+  MeshOptions box;
+  box.cells = {4, 4, 4};
+  box.periodic = {1, 1, 0};
+  const Mesh mesh(box);
+  Options options;
+  options.set("material_bead_density", "1000");
+  options.set("material_bead_young_modulus", "1e6");
+  options.set("profile_all_size", "1,1,1");
+  options.set("profile_all_from", "0.5,0.5,0.5");
+  options.set("profile_all_points", "1");
+  options.set("profile_half_size", "0.5,1,1");
+  options.set("profile_half_from", "0.25,0.5,0.5");
+  options.set("profile_half_to", "0.75,0.5,0.5");
+  options.set("profile_half_points", "2");
+  options.set("profile_round_axis", "x");  // all of a ring that is as long as the period
+  options.set("profile_round_centre", "0,0.5,0.5");
+  options.set("profile_round_size", "1,0.4,0.4");
+  options.set("profile_round_from", "0.5,0.5,0.7");
+  options.set("profile_round_points", "1");
+  Particles particles(mesh, options, Vec3::Zero(), true);
+  constexpr double radius = 0.1;
+  std::vector<Seed> seeds(3);
+  seeds[0].position = Vec3(0.02, 0.5, 0.7);   // across one side
+  seeds[1].position = Vec3(0.97, 0.99, 0.4);  // across an edge
+  seeds[2].position = Vec3(0.5, 0.5, 0.3);    // across no side
+  for (auto& seed : seeds) seed.radius = radius;
+  particles.add(seeds);
+  Profiles profiles(mesh, options, true);
+  Moment moment;
+  moment.time = moment.dt = 1;
+  moment.particles = &particles;
+  profiles.sample(moment);
+  TemporaryDirectory folder;
+  OutputOptions output;
+  output.directory = folder / "run";
+  OutputDirectory directory(output);
+  directory.prepare("");
+  profiles.write(directory);
+  const double volume = 4.0 / 3 * M_PI * radius * radius * radius;
+  CHECK(profiles.values("all.void_fraction")[0] == Approx(1 - 3 * volume).epsilon(1e-12));
+  const auto halves = profiles.values("half.void_fraction");
+  CHECK(halves[0] + halves[1] == Approx(2 - 6 * volume).epsilon(1e-12));
+  // A cap 0.08 high of the first lies across x = 0, one 0.07 high of the second within x > 0, half of the third is
+  // here.
+  const auto cap = [&](double h) { return M_PI * h * h * (3 * radius - h) / 3; };
+  CHECK(halves[0] == Approx(1 - 2 * (volume - cap(0.08) + cap(0.07) + 0.5 * volume)).epsilon(1e-3));
+  // The ring, 0 to 0.4 about the middle, holds the first and the third.
+  CHECK(profiles.values("round.void_fraction")[0] == Approx(1 - 2 * volume / (M_PI * 0.16)).epsilon(1e-4));
+}
+
 TEST_CASE("a profile outside the mesh or without extent is refused", "[app]") {
   MeshOptions box;
   box.cells = {2, 2, 2};
@@ -73,14 +125,16 @@ TEST_CASE("time left is written as a clock", "[app]") {
   CHECK(clock_text(std::nan("")) == "days");
 }
 
-TEST_CASE("the record of a run gives every option back, defaults marked", "[app]") {
+TEST_CASE("the record of a run gives every option back, defaults as comments", "[app]") {
   Options options;
   options.set("output_directory", "it's here");
   options.set("output_interval", "0.5");
+  options.set("fluid_pressure_ksp_rtol", "1e-9");  // PETSc's
   OutputOptions output;
   options.read("output", output);
   const std::string text = record_of(options);
   CHECK(text.find("output_directory: 'it''s here'\n") != std::string::npos);
   CHECK(text.find("output_interval: 0.5\n") != std::string::npos);
-  CHECK(text.find("output_overwrite: yes  # default\n") != std::string::npos);
+  CHECK(text.find("\n# output_overwrite: yes\n") != std::string::npos);
+  CHECK(text.find("\nfluid_pressure_ksp_rtol: '1e-9'\n") != std::string::npos);
 }

@@ -235,14 +235,21 @@ TEST_CASE("only an earlier run of ours is overwritten, and nothing that is not o
     series.write(0, {{"position", 3, std::span<const double>()}});
   }
   touch(folder / "a/b/run/notes.txt");
+  // A table that the next run does not write must not be taken for its own.
+  for (const std::string table : {"energy", "errors", "walls", "removed", "probe_a"})
+    touch(folder / ("a/b/run/" + table + ".csv"));
   OutputDirectory(options).prepare("title: second\n");
   MPI_Barrier(PETSC_COMM_WORLD);
   CHECK_FALSE(std::filesystem::exists(folder / "a/b/run/particles.xdmf"));
   CHECK_FALSE(std::filesystem::exists(folder / "a/b/run/particles/000000.h5"));
   CHECK(std::filesystem::exists(folder / "a/b/run/notes.txt"));
+  for (const std::string table : {"energy", "errors", "walls", "removed", "probe_a"})
+    CHECK_FALSE(std::filesystem::exists(folder / ("a/b/run/" + table + ".csv")));
   CHECK(text_of(folder / "a/b/run/run.yaml") == "title: second\n");
   options.overwrite = false;
   CHECK_THROWS_AS(OutputDirectory(options), UserError);
+  CHECK_NOTHROW(OutputDirectory(options, folder / "a/b/run/checkpoint.h5"));  // it goes on there
+  CHECK_THROWS_AS(OutputDirectory(options, folder / "a/b/checkpoint.h5"), UserError);
   options.overwrite = true;
   options.directory = folder.path();
   CHECK_NOTHROW(OutputDirectory(options));  // foreign files do no harm

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/field_file.hpp"
+#include "fluid/initial_state.hpp"
 #include "fluid/turbulence/wall_law.hpp"
 
 namespace silt {
@@ -22,10 +23,12 @@ InitialTurbulence::InitialTurbulence(const Mesh& mesh, Options& options, const T
     : energy_("fluid_initial_turbulent_energy", read.initial_energy),
       ratio_("fluid_initial_viscosity_ratio", read.initial_viscosity_ratio) {
   const bool formula = options.given("fluid_initial_turbulent_energy");
-  const auto path = options.find("fluid_initial_file");
+  InitialStateOptions start;  // where the file lies may be said relative to the case
+  options.read("fluid", start);
+  const bool path = !start.file.empty();
   if (path && options.given("restart")) return;
   if (path) {
-    const FieldFile file("fluid_initial_file", *path);
+    const FieldFile file("fluid_initial_file", start.file);
     if (file.has(energy_field)) {
       for (const char* name : {"fluid_initial_turbulent_energy", "fluid_initial_viscosity_ratio"})
         if (options.given(name))
