@@ -18,6 +18,11 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
+/// Whether all are: the largest of values one of which is not a number would be anything.
+bool numbers(const std::vector<double>& values) {
+  return std::none_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
+}
+
 double interpolate(const std::vector<double>& times, const std::vector<double>& values, double at) {
   const double slack = 1e-9 * std::max(1e-300, std::abs(at));
   if (times.empty() || at < times.front() - slack || at > times.back() + slack) return unknown;
@@ -109,6 +114,14 @@ Expectations::Expectations(Options& options, const std::vector<std::string>& thr
                       hint.empty() ? "; see the columns of diagnostics.csv and the names of probes, lines and profiles"
                                    : fmt::format(", did you mean {}?", hint)));
     }
+    const auto of_name = [&](const std::vector<std::string>& list) {
+      return std::count(list.begin(), list.end(), given.quantity);
+    };
+    if (of_name(through_time) + of_name(along_lines) > 1)
+      throw UserError(
+          fmt::format("-{}_quantity: '{}' is the name of two things; give one of the boundaries, walls, probes, lines "
+                      "and profiles another",
+                      prefix, given.quantity));
     if (!given.less.empty() && (item.along || !has(through_time) ||
                                 std::find(through_time.begin(), through_time.end(), given.less) == through_time.end()))
       throw UserError(fmt::format("-{}_less: '{}' and '{}' are not both quantities through time", prefix,
@@ -122,6 +135,18 @@ Expectations::Expectations(Options& options, const std::vector<std::string>& thr
       throw UserError(fmt::format("-{}_window must be two increasing times in s", prefix));
     if (given.at && !given.window.empty())
       throw UserError(fmt::format("-{}: at and window exclude each other", prefix));
+    if (item.along && (given.at || !given.window.empty()))
+      throw UserError(fmt::format("-{}: '{}' is taken at the last output of the run; it has no at and no window",
+                                  prefix, given.quantity));
+    if (given.at && !given.statistic.empty())
+      throw UserError(fmt::format("-{}: at is one moment and has no statistic; give a window", prefix));
+    if (item.along && !given.statistic.empty() &&
+        (!given.values.empty() ||
+         (given.statistic != "mean" && given.statistic != "minimum" && given.statistic != "maximum")))
+      throw UserError(
+          fmt::format("-{}_statistic: '{}' lies along a line; of it there are the mean, minimum and maximum, and the "
+                      "values themselves without a statistic",
+                      prefix, given.quantity));
     if (given.mode == "relative" && given.value && *given.value == 0)
       throw UserError(fmt::format("-{}: a relative error from 0 has no meaning, use mode: absolute", prefix));
     items_.push_back(std::move(item));
@@ -188,7 +213,7 @@ Expectations::Verdict Expectations::verdict(const ExpectationOptions& options, c
     const std::string statistic = !options.statistic.empty() ? options.statistic
                                   : options.window.empty()   ? "last"
                                                              : "mean";
-    if (covered && !v.empty()) {
+    if (covered && !v.empty() && (statistic == "last" || statistic == "rate" || numbers(v))) {
       const auto [low, high] = std::minmax_element(v.begin(), v.end());
       computed = statistic == "mean"        ? mean(t, v)
                  : statistic == "minimum"   ? *low
@@ -205,7 +230,7 @@ Expectations::Verdict Expectations::verdict(const ExpectationOptions& options, c
 
 Expectations::Verdict Expectations::verdict_along(const ExpectationOptions& options,
                                                   const std::vector<double>& values) {
-  if (values.empty()) return judged(options, options.value.value_or(0), unknown, unknown);
+  if (values.empty() || !numbers(values)) return judged(options, options.value.value_or(0), unknown, unknown);
   const double count = static_cast<double>(values.size());
   const double average = options.factor * std::accumulate(values.begin(), values.end(), 0.0) / count;
   if (options.value) {

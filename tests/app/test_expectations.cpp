@@ -116,6 +116,40 @@ TEST_CASE("an expectation that cannot be judged is refused before the run", "[ap
   CHECK(refusal({{"quantity", "wall.velocity_x"}, {"values", "1,2"}, {"tolerance", "0.1"}}).empty());
 }
 
+TEST_CASE("what an expectation could not heed is refused instead of left out", "[app]") {
+  const auto along = [](const std::string& name, const std::string& value, const std::string& expected = "value") {
+    return refusal({{"quantity", "wall.velocity_x"}, {expected, "1"}, {"tolerance", "0.1"}, {name, value}});
+  };
+  CHECK(along("statistic", "maximum").empty());
+  CHECK(along("statistic", "mean").empty());
+  CHECK(along("at", "1").find("last output") != std::string::npos);
+  CHECK(along("window", "1,2").find("last output") != std::string::npos);
+  CHECK(along("statistic", "frequency").find("minimum") != std::string::npos);
+  CHECK_FALSE(along("statistic", "maximum", "values").empty());
+  CHECK_FALSE(
+      refusal({{"quantity", "bed_height"}, {"value", "1"}, {"tolerance", "1"}, {"at", "1"}, {"statistic", "mean"}})
+          .empty());
+  Options options;
+  options.set("expect_a_quantity", "inlet.pressure");
+  options.set("expect_a_value", "1");
+  options.set("expect_a_tolerance", "1");
+  CHECK_NOTHROW(Expectations(options, {"inlet.pressure"}, {}));
+  // A boundary and a probe, or a probe and a line, of the same name.
+  CHECK_THROWS_WITH(Expectations(options, {"inlet.pressure", "inlet.pressure"}, {}), Catch::Contains("two things"));
+  CHECK_THROWS_WITH(Expectations(options, {"inlet.pressure"}, {"inlet.pressure"}), Catch::Contains("two things"));
+}
+
+TEST_CASE("a history that is not a number somewhere has no extreme that could pass", "[app]") {
+  const std::vector<double> t = {0, 1, 2}, v = {1, std::nan(""), 2};
+  for (const char* statistic : {"minimum", "maximum", "amplitude", "mean"}) {
+    auto options = expected(1, 10);
+    options.statistic = statistic;
+    INFO(statistic);
+    CHECK_FALSE(Expectations::verdict(options, t, v).pass);
+    if (std::string(statistic) != "amplitude") CHECK_FALSE(Expectations::verdict_along(options, v).pass);
+  }
+}
+
 TEST_CASE("the verdicts of a run are written with their sources", "[app][mpi]") {
   TemporaryDirectory folder;
   OutputOptions output;
