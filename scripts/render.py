@@ -21,7 +21,10 @@ def arguments():
     parser.add_argument("-size", "--size", default="1600x1200")
     given = parser.parse_args()
     given.picture = given.picture or os.path.join(given.directory, "render.png")
-    given.size = [int(v) for v in given.size.split("x")]
+    words = given.size.split("x")
+    if len(words) != 2 or not all(word.isdigit() and int(word) > 0 for word in words):
+        sys.exit(f"render: error: -size {given.size}: width and height in pixels, as in 1600x1200")
+    given.size = [int(word) for word in words]
     return given
 
 
@@ -224,7 +227,11 @@ def main():
         particles = None
     if not (fluid or particles):
         sys.exit("render: error: neither particles nor fluid to draw")
-    box = (fluid or particles).GetDataInformation().GetBounds()
+    box = list((fluid or particles).GetDataInformation().GetBounds())
+    if not fluid:  # the spheres, not their centres alone
+        arrays = point_arrays(particles)
+        radius = arrays["radius"].GetRange(0)[1] if "radius" in arrays else 0
+        box = [edge + (radius if k % 2 else -radius) for k, edge in enumerate(box)]
     sizes = [box[2 * d + 1] - box[2 * d] for d in range(3)]
     # Along the thinnest direction; a box as thick as it is wide is looked at along y.
     axis = min((1, 0, 2), key=lambda d: round(sizes[d] / max(sizes), 3) if sizes[d] < 0.999 * min(s for k, s in enumerate(sizes) if k != d) or d == 1 else 9)
