@@ -230,7 +230,14 @@ ParticleStep Engine::advance(double time, double dt) {
   wall_impulse.assign(walls_.count(), Vec3::Zero());
   wall_turning = wall_impulse;
   wall_time = dt;
-  if (total == 0 || dt <= 0) return result;
+  result.removed = removed;
+  if (dt <= 0) return result;
+  if (total == 0) {  // walls do not wait for particles
+    for (int w = 0; w < walls_.count(); ++w) wall_force[w].setZero(), wall_torque[w].setZero();
+    wall_total_.setZero();
+    move_walls(time, dt);
+    return result;
+  }
   if (options_.fixed && !settling_) return hold(time, dt);
   if (!started_)
     start(time);

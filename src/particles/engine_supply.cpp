@@ -128,6 +128,8 @@ void Engine::take_out(double time) {
     gone.velocity = vec3(motion.velocity);
     gone.mass = 1 / motion.inverse_mass;
     gone.cell = store.cell[p];
+    if (store.acted_on)
+      gone.action.work = store.action[p].work;  // of the step before; the fluid is still to be charged
     impulses.removed -= gone.mass * gone.velocity;
     impulses.removed_mass += gone.mass;
     if (energy_) energy_->went(motion);

@@ -192,6 +192,34 @@ TEST_CASE("A servo wall presses with its force, an oscillating one is where its 
   CHECK(floor == Approx(-2 - box.particles.total_mass() * 9.81).epsilon(2e-3));
 }
 
+TEST_CASE("Walls move before the first particle comes and after the last has gone", "[walls][mpi]") {
+  BoxCase setup = ball_case({{"wall_belt_type", "plane"},
+                             {"wall_belt_point", "0, 0, -0.09"},
+                             {"wall_belt_normal", "0, 0, 1"},
+                             {"wall_belt_velocity", "0, 0.01, 0"},
+                             {"wall_drum_type", "cylinder"},
+                             {"wall_drum_point", "0, 0, 0"},
+                             {"wall_drum_axis", "1, 0, 0"},
+                             {"wall_drum_radius", "0.09"},
+                             {"wall_drum_rotation_rate", "2"},
+                             {"wall_drum_rotation_axis", "1, 0, 0"}});
+  BoxRun box(setup);
+  const auto check = [&](double time) {
+    for (const auto& load : box.particles.wall_loads()) {
+      INFO(load.name << " at " << time);
+      if (load.name == "belt") CHECK(load.displacement[1] == Approx(0.01 * time));
+      if (load.name == "drum") CHECK(load.angle == Approx(2 * time));
+      CHECK(load.force.norm() == 0);
+    }
+  };
+  CHECK(box.particles.total() == 0);
+  for (int k = 0; k < 5; ++k) box.particles.advance(0.01 * k, 0.01);
+  check(0.05);
+  box.particles.add({sphere(Vec3(0, 0, 0), Vec3::Zero(), 0.005)});
+  box.particles.advance(0.05, 0.01);
+  check(0.06);
+}
+
 TEST_CASE("Where a cylinder meets a cone a sphere feels each once, and the rim of the outlet", "[walls]") {
   const Mesh mesh = [] {
     MeshOptions options;

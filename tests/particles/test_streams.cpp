@@ -128,6 +128,25 @@ TEST_CASE("A removal box takes out those in it, which are listed and counted", "
   CHECK(box.particles.take_impulses().removed_mass == Approx(inside * mass_of(2e-3)).epsilon(1e-12));
 }
 
+TEST_CASE("What was removed stays counted when none is left, and takes the work it owes along", "[insertion][mpi]") {
+  BoxRun box(vessel({{"insertion_a_diameter", "2e-3"},
+                     {"insertion_a_count", "20"},
+                     {"removal_all_lower", "0, 0, 0"},
+                     {"removal_all_upper", "0.06, 0.06, 0.06"},
+                     {"removal_all_start", "0.01"}}));
+  run(box.particles, 0, 0.01, 1);
+  for (int p = 0; p < box.particles.owned(); ++p) box.particles.fluid_action(p).work = 3;
+  box.particles.supply(0.01, 0.001);
+  CHECK(box.particles.advance(0.01, 0.001).removed == 20);
+  double work = 0;
+  for (const Departed& gone : box.particles.departed()) work += gone.action.work;
+  CHECK(mpi_sum(work) == Approx(60));
+  CHECK(box.particles.total() == 0);
+  box.particles.supply(0.011, 0.001);
+  CHECK(box.particles.advance(0.011, 0.001).removed == 20);
+  CHECK(box.particles.departed().empty());
+}
+
 TEST_CASE("Diameters follow a list by mass and a sieve curve by mass", "[insertion]") {
   BoxRun list(vessel({{"insertion_a_diameter_distribution", "discrete"},
                       {"insertion_a_diameters", "1e-3, 2e-3"},
