@@ -58,7 +58,14 @@ Coupling::Coupling(const Mesh& mesh, Particles& particles, Fluid& fluid, Options
     if (!options_.depth)
       throw UserError("coupling_depth: give the thickness in m that the 2D mesh stands for; particles have a volume");
     depth_ = *options_.depth;
+  } else if (options_.depth) {
+    throw UserError("-coupling_depth is the thickness that a 2D mesh stands for; this one is in space");
   }
+  const bool drag = std::visit([](const auto& law) { return std::string(law.name) != "none"; }, drag_);
+  if (!(fluid.viscosity() > 0) && (drag || heat_))
+    throw UserError(
+        "-fluid_viscosity 0: drag and heat transfer have no laws without a viscosity; give one, or -drag_type none and "
+        "-heat_particles no");
   take_void_fraction();
 }
 

@@ -28,6 +28,8 @@ insertion:
 drag: {type: gidaspow}
 output: {directory: out}
 """
+NO_FRICTION = CASE.replace('fluid: {density: 1.2, viscosity: 1.8e-5, initial_velocity: "0, 0, 0.3"}', "fluid: {type: compressible, viscosity: 0, initial_pressure: 1e5, initial_temperature: 300}")
+NO_FRICTION = NO_FRICTION.replace('{type: velocity, velocity: "0, 0, 0.3"}', "{type: slip}").replace("{type: pressure}", "{type: slip}")
 BOX_ONLY = "mesh: {type: box, cells: [2, 2, 2]}\n"
 GMSH_HEAD = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
 FROM_FILE = ["-insertion_bed_type", "file", "-insertion_bed_file", "start.csv"]
@@ -114,6 +116,11 @@ WRONG = [
     # particles
     ("an insertion of an unknown material", {}, options("-insertion_bed_material", "bean"), ["bean", "bead"]),
     ("an unknown kind of insertion", {}, options("-insertion_bed_type", "pour"), ["-insertion_bed_type", "fill"]),
+    ("a disc of a stream without a direction", {}, options("-insertion_s_type", "stream", "-insertion_s_diameter", "1e-3", "-insertion_s_number_rate", "10", "-insertion_s_centre", "0.005,0.005,0.03", "-insertion_s_radius", "0.003", "-insertion_s_normal", "0,0,0"), ["-insertion_s_normal", "direction"]),
+    ("a plane without a direction", {}, options("-wall_a_type", "plane", "-wall_a_point", "0,0,0.001", "-wall_a_normal", "0,0,0"), ["-wall_a_normal", "direction"]),
+    ("a cylinder without a direction", {}, options("-wall_a_type", "cylinder", "-wall_a_point", "0.005,0.005,0", "-wall_a_radius", "0.004", "-wall_a_axis", "0,0,0"), ["-wall_a_axis", "direction"]),
+    ("the depth of a mesh in space", {}, options("-coupling_depth", "0.01"), ["-coupling_depth", "2D"]),
+    ("drag in a gas without viscosity", {"case.yaml": NO_FRICTION}, [], ["-fluid_viscosity 0", "drag"]),
     ("a negative diameter", {}, options("-insertion_bed_diameter", "-1e-3"), ["-insertion_bed_diameter"]),
     ("more particles than fit", {}, options("-insertion_bed_count", "5000"), ["insertion_bed", "5000"]),
     ("particles larger than the box", {}, options("-insertion_bed_diameter", "0.02"), ["insertion_bed"]),

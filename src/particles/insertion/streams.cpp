@@ -89,6 +89,7 @@ Streams::Streams(const Walls& walls, Options& options, const Materials& material
     source.disc = disc == 3;
     if (source.disc) {
       if (surface.dimension == 2) throw UserError(fmt::format("-{}: a 2D mesh has no discs", prefix));
+      if (chosen.normal->norm() == 0) throw UserError(fmt::format("option -{}_normal: it has no direction", prefix));
       source.normal = chosen.normal->normalized();
       if (chosen.radius < source.sizes.largest_radius())
         throw UserError(fmt::format("option -{}_radius: {:g} m is less than that of a particle, {:g} m", prefix,

@@ -122,6 +122,9 @@ RigidWall::RigidWall(const std::string& name, const RigidWallOptions& options, c
     : name_(name), material_(material), lower_(domain.lower), upper_(domain.upper) {
   const std::string prefix = "wall_" + name;
   check_given(options, prefix);
+  for (const auto& [property, direction] : {std::pair{"normal", options.normal}, std::pair{"axis", options.axis}})
+    if (direction && direction->norm() == 0)
+      throw UserError(fmt::format("option -{}_{}: it has no direction", prefix, property));
   WallMotionOptions motion = options.motion;
   const WallSideChoice side = side_of(options);
   if (options.type == "plane") {
