@@ -4,7 +4,8 @@
 usage: scripts/fluid_pictures.py [word] [--keep]    needs build/silt, numpy, h5py, matplotlib (Debian's Python)
 
 Each case is run (--keep: only where it has no output yet); the picture shows its last output: the speed (the temperature where
-there is one, the Mach number of a gas), in the plane or in the middle plane of a box. Also writes docs/gallery/fluid/README.md.
+there is one, the Mach number of a gas), in the plane or in the middle plane of a box. Families of cases that find an order of convergence
+share one picture of their errors (FAMILIES). Also writes docs/gallery/fluid/README.md.
 """
 import argparse
 import glob
@@ -25,6 +26,12 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FOLDER = os.path.join(ROOT, "docs", "gallery", "fluid")
 # What of a mesh is worth seeing, where that is not all of it: heights, m.
 HEIGHTS = {"flat_plate": (0, 0.05), "flat_plate_fine": (0, 0.05)}
+# One picture of the errors for cases that differ in the cell or the model.
+FAMILIES = {
+    "orders_gas": ("manufactured_triangle_gas", "manufactured_quadrilateral_gas", "manufactured_tetrahedron_gas", "manufactured_hexahedron_gas"),
+    "orders_turbulence": ("manufactured_triangle_k_epsilon", "manufactured_quadrilateral_k_epsilon", "manufactured_triangle_k_omega", "manufactured_quadrilateral_k_omega"),
+    "orders_exact": ("isentropic_vortex_order", "sod_tube_order"),
+}
 THERMAL = ("natural_convection", "heated_couette")
 
 
@@ -81,6 +88,35 @@ def picture(name, title, output):
     plt.close(figure)
 
 
+def family_picture(family):
+    """Errors of all levels of the family's cases over the cells along x, with a slope for comparison."""
+    figure, axes = plt.subplots(figsize=(6.4, 3.6), dpi=80)
+    colours = {}
+    for marker, name in zip("o^sv", FAMILIES[family]):
+        path = os.path.join(ROOT, "inputs", "fluid", name + ".yaml")
+        errors = {}
+        for level in re.findall(r"^# level:(.*)$", open(path).read(), re.M):
+            output = os.path.join(ROOT, "output", "pictures", name)
+            subprocess.run([os.path.join(ROOT, "build", "silt"), path, "-output_directory", output, *level.split()], cwd=ROOT, stdout=subprocess.DEVNULL, check=True)
+            rows = open(os.path.join(output, "errors.csv")).read().split()
+            cells = int(level.split()[level.split().index("-mesh_cells") + 1].split(",")[0])
+            for column, value in list(zip(rows[0].split(","), rows[-1].split(",")))[1:]:
+                errors.setdefault(column.removesuffix("_error"), []).append((cells, float(value)))
+        for column, points in errors.items():
+            colour = colours.setdefault(column, f"C{len(colours)}")
+            axes.loglog(*zip(*points), marker=marker, color=colour, label=f"{name.removeprefix('manufactured_')}: {column}", markersize=4, linewidth=0.8)
+    low, high = axes.get_xlim()
+    top = axes.get_ylim()[1]
+    for order, style in ((1, ":"), (2, "--")):
+        axes.loglog([low, high], [top, top * (low / high) ** order], "k" + style, linewidth=0.7, label=f"order {order}")
+    axes.set_xlabel("cells along x")
+    axes.set_ylabel("error")
+    axes.legend(fontsize=5.5, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.tight_layout()
+    figure.savefig(os.path.join(FOLDER, family + ".png"))
+    plt.close(figure)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("word", nargs="?", default="")
@@ -91,7 +127,7 @@ def main():
     failed = []
     for path in cases:
         name = os.path.splitext(os.path.basename(path))[0]
-        if arguments.word not in name:
+        if arguments.word not in name or any(name in members for members in FAMILIES.values()):
             continue
         output = os.path.join(ROOT, "output", "pictures", name)
         if not (arguments.keep and glob.glob(os.path.join(output, "fluid", "[0-9]*.h5"))):
@@ -100,14 +136,19 @@ def main():
             picture(name, name, output)
         except (IndexError, OSError) as error:
             failed.append(f"{name}: {error}")
+    shared = {name: family for family, members in FAMILIES.items() for name in members}
+    for family, members in FAMILIES.items():
+        if any(arguments.word in name for name in (family, *members)):
+            family_picture(family)
     with open(os.path.join(FOLDER, "README.md"), "w") as page:
         page.write("# Cases of the carrier fluid\n\nMade by `scripts/fluid_pictures.py` from `inputs/fluid`; the figures they must give stand in [verification](../../verification.md).\n\n| case | question | picture |\n|---|---|---|\n")
         for path in cases:
             name = os.path.splitext(os.path.basename(path))[0]
             text = open(path).read()
             question = re.search(r"^# Question: ([^?]*\?)", text, re.M)
-            if os.path.exists(os.path.join(FOLDER, name + ".png")):
-                page.write(f"| `{name}` | {re.sub(r'[ ]*[#][ ]', ' ', question.group(1).replace(chr(10), ' ')) if question else ''} | ![]({name}.png) |\n")
+            image = shared.get(name, name)
+            if os.path.exists(os.path.join(FOLDER, image + ".png")):
+                page.write(f"| `{name}` | {re.sub(r'[ ]*[#][ ]', ' ', question.group(1).replace(chr(10), ' ')) if question else ''} | ![]({image}.png) |\n")
     print("\n".join(failed))
     return 1 if failed else 0
 

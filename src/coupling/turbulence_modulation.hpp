@@ -28,20 +28,24 @@ struct NoModulation {
   void options(OptionGroup&) {}
 };
 
-/// The turbulence works against the drag of particles that do not follow it (Simonin & Viollet 1990; Elghobashi &
-/// Abou-Arab 1983), q the covariance of the fluctuations of fluid and particle in equilibrium (Tchen-Hinze), none for a
-/// held particle.
-struct DragDissipation {
-  static constexpr const char* name = "drag_dissipation";
-  static constexpr ModelNote note = {
-      "", "Simonin & Viollet 1990; Elghobashi & Abou-Arab 1983",
-      "W = -k_p (2 k - q), q = 2 k/(1 + St), St = (m/k_p)/(3/2 C_mu k/epsilon); epsilon: C epsilon/k W",
-      "decay among held particles in closed form; limits of St; sums"};
+/// What epsilon gets beside what k gets.
+struct AddedDissipation {
   double dissipation_factor = 1.2;
   void options(OptionGroup& option) {
     option("dissipation_factor", dissipation_factor, "-", "C: epsilon gets C epsilon/k times what k gets",
            non_negative);
   }
+};
+
+/// The turbulence works against the drag of particles that do not follow it (Simonin & Viollet 1990; Elghobashi &
+/// Abou-Arab 1983), q the covariance of the fluctuations of fluid and particle in equilibrium (Tchen-Hinze), none for a
+/// held particle.
+struct DragDissipation : AddedDissipation {
+  static constexpr const char* name = "drag_dissipation";
+  static constexpr ModelNote note = {
+      "", "Simonin & Viollet 1990; Elghobashi & Abou-Arab 1983",
+      "W = -k_p (2 k - q), q = 2 k/(1 + St), St = (m/k_p)/(3/2 C_mu k/epsilon); epsilon: C epsilon/k W",
+      "decay among held particles in closed form; limits of St; sums"};
   double work(const ParticleInTurbulence& p) const {
     constexpr double c_mu = 0.09;
     // St/(1 + St) = 1/(1 + T_L k_p/m)
@@ -52,14 +56,9 @@ struct DragDissipation {
 
 /// Wakes: all of the work that the mean slip does against the drag becomes turbulence (Crowe 2000, eq. of the
 /// volume-averaged k).
-struct SlipProduction {
+struct SlipProduction : AddedDissipation {
   static constexpr const char* name = "slip_production";
   static constexpr ModelNote note = {"", "Crowe 2000", "W = k_p |u - v|^2; epsilon: C epsilon/k W", "its value; sums"};
-  double dissipation_factor = 1.2;
-  void options(OptionGroup& option) {
-    option("dissipation_factor", dissipation_factor, "-", "C: epsilon gets C epsilon/k times what k gets",
-           non_negative);
-  }
   double work(const ParticleInTurbulence& p) const { return p.exchange * p.slip * p.slip; }
 };
 

@@ -59,7 +59,6 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
   if (fluid.scheme != "monolithic" && options.find("fluid_element").value_or("equal_order") != "equal_order")
     throw UserError(fmt::format("option -fluid_element ({}): '{}' needs -fluid_scheme monolithic",
                                 options.origin("fluid_element"), *options.find("fluid_element")));
-  if (fluid.type == "prescribed") Turbulence::refuse(mesh, options, "with -fluid_type prescribed");
   if (compressible) {
     if (options.given("fluid_scheme") && fluid.scheme != "monolithic")
       throw UserError("-fluid_scheme pressure_correction is not available with -fluid_type compressible");
@@ -83,6 +82,7 @@ std::unique_ptr<Fluid> Fluid::create(const Mesh& mesh, Options& options, const V
     auto given = std::make_unique<Prescribed>(mesh, options, fluid);
     given->description_ =
         fmt::format("prescribed, {} kg/m3, {} Pa s, model {}", fluid.density, fluid.viscosity, fluid.model);
+    if (const Turbulence* turbulence = given->turbulence()) given->description_ += "; " + turbulence->name();
     return given;
   }
   auto made = fluid.scheme == "pressure_correction" ? make_pressure_correction(mesh, options, fluid, gravity)

@@ -24,7 +24,8 @@ Prescribed::Prescribed(const Mesh& mesh, Options& options, const FluidOptions& f
       pressure_formula_("fluid_pressure", read(options).pressure),
       mass_(lumped_mass(mesh)),
       gradient_(mesh, mass_),
-      facets_(facet_rules(mesh)) {
+      facets_(facet_rules(mesh)),
+      order_(fluid.order) {
   load_ = ParticleLoad(mesh.nodes);
   density_ = fluid.density;
   viscosity_ = fluid.viscosity;
@@ -49,6 +50,55 @@ Prescribed::Prescribed(const Mesh& mesh, Options& options, const FluidOptions& f
   evaluate(0);
   change_.assign(velocity_.size(), 0.0);
   temperature_change_.assign(temperature_.size(), 0.0);
+  if (options.find("fluid_turbulence").value_or("none") == "none")
+    Turbulence::refuse(mesh, options, "with -fluid_type prescribed");
+  else
+    make_turbulence(options, given.velocity);
+}
+
+void Prescribed::make_turbulence(Options& options, const std::string& velocity) {
+  for (const auto& boundary : mesh_.boundaries) {
+    const std::string prefix = "boundary_" + boundary + "_";
+    for (const char* name : {"velocity", "mass_flow", "pressure", "rotation_rate"})
+      if (options.given(prefix + name))
+        throw UserError(fmt::format(
+            "-{}{} has no meaning with -fluid_type prescribed, whose velocity is -fluid_velocity", prefix, name));
+    const std::string type = options.find(prefix + "type").value_or("");
+    if (type == "velocity") options.set(prefix + "velocity", velocity);
+    if (type == "mass_flow")
+      throw UserError(
+          fmt::format("-{}type mass_flow has no meaning with -fluid_type prescribed: type velocity is an "
+                      "inflow that holds the turbulence given there",
+                      prefix));
+  }
+  if (energy_formula_)
+    throw UserError("-fluid_turbulent_energy and -fluid_turbulence exclude each other: k is given or solved for");
+  boundaries_ = std::make_unique<BoundaryConditions>(mesh_, options, density_);
+  turbulence_ = Turbulence::create(mesh_, options, *boundaries_);
+  density_field_.assign(mesh_.nodes, density_);
+  viscosity_field_.assign(mesh_.nodes, viscosity_);
+  past_.assign(2 * static_cast<std::size_t>(mesh_.nodes), 0.0);
+  turbulence_->start(turbulent_flow());
+}
+
+Turbulence::Flow Prescribed::turbulent_flow() const {
+  return {velocity_,
+          density_field_,
+          viscosity_field_,
+          void_fraction_formula_ ? void_fraction_ : load_.void_fraction,
+          load_.turbulence,
+          false,
+          load_.dissipation_factor};
+}
+
+int Prescribed::solve_turbulence(double time, double dt) {
+  const double steps = mpi_max(past_.empty() ? 0.0 : past_[0]), last = mpi_max(past_.empty() ? 0.0 : past_[1]);
+  const Bdf bdf = order_ == 1 || steps < starting_steps ? Bdf::first(dt) : Bdf::second(dt, last);
+  const int iterations = turbulence_->solve(time, bdf, dt, turbulent_flow());
+  turbulence_->accept();
+  for (std::size_t i = 0; i < past_.size(); i += 2)
+    past_[i] = std::min(steps + 1, 1.0 * starting_steps), past_[i + 1] = dt;
+  return iterations;
 }
 
 void Prescribed::evaluate(double time) {
@@ -84,13 +134,20 @@ void Prescribed::evaluate(double time) {
 }
 
 FluidStep Prescribed::advance(double time, double dt) {
-  change_ = velocity_;
-  temperature_change_ = temperature_;
+  FluidStep step;
+  const std::vector<double> velocity = velocity_, temperature = temperature_;
   evaluate(time + dt);
+  try {
+    if (turbulence_) step.turbulence_iterations = solve_turbulence(time, dt);
+  } catch (const SolveFailure&) {
+    evaluate(time);
+    throw;
+  }
+  change_ = velocity;
+  temperature_change_ = temperature;
   for (std::size_t k = 0; k < change_.size(); ++k) change_[k] = velocity_[k] - change_[k];
   for (std::size_t k = 0; k < temperature_.size(); ++k)
     temperature_change_[k] = temperature_[k] - temperature_change_[k];
-  FluidStep step;
   for (int i = 0; i < mesh_.owned_nodes; ++i)
     step.momentum += density_ * load_.void_fraction[i] * mass_[i] * vec3(&velocity_[3 * static_cast<std::size_t>(i)]);
   MPI_Allreduce(MPI_IN_PLACE, step.momentum.data(), 3, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
@@ -148,9 +205,22 @@ std::vector<Fluid::StateArray> Prescribed::state() {
     arrays.push_back({"turbulent_dissipation", &turbulent_dissipation_, 1});
   }
   if (void_fraction_formula_) arrays.push_back({"given_void_fraction", &void_fraction_, 1});
+  if (turbulence_) {
+    arrays.push_back({"turbulence_steps", &past_, 2});
+    turbulence_->add_state(arrays);
+  }
   return arrays;
 }
 
-void Prescribed::restored() { gradient_.apply(pressure_, 1, pressure_gradient_); }
+std::vector<Fluid::Scalar> Prescribed::scalars() const {
+  std::vector<Scalar> result = Fluid::scalars();
+  if (turbulence_) turbulence_->add_scalars(result);
+  return result;
+}
+
+void Prescribed::restored() {
+  gradient_.apply(pressure_, 1, pressure_gradient_);
+  if (turbulence_) turbulence_->restored();
+}
 
 }  // namespace silt

@@ -6,6 +6,7 @@
 #include "fluid/boundary/facets.hpp"
 #include "fluid/fluid.hpp"
 #include "fluid/fluid_options.hpp"
+#include "fluid/turbulence/turbulence.hpp"
 
 namespace silt {
 
@@ -29,7 +30,7 @@ struct PrescribedOptions {
 
 /// `-fluid_type prescribed`: velocity, pressure and void fraction by formulas at the mesh nodes. Particles feel it as
 /// they feel a solved flow; what they do to it changes nothing, and is accounted for all the same. For flows that are
-/// known, and for tests of every force without a solution.
+/// known, and for tests of every force without a solution. `-fluid_turbulence` solves for the turbulence in it.
 class Prescribed final : public Fluid {
  public:
   Prescribed(const Mesh& mesh, Options& options, const FluidOptions& fluid);
@@ -41,16 +42,26 @@ class Prescribed final : public Fluid {
   std::span<const double> pressure() const override { return pressure_; }
   std::span<const double> pressure_gradient() const override { return pressure_gradient_; }
   std::span<const double> given_void_fraction() const override { return void_fraction_; }
-  std::span<const double> turbulent_energy() const override { return turbulent_energy_; }
-  std::span<const double> turbulent_dissipation() const override { return turbulent_dissipation_; }
+  std::span<const double> turbulent_energy() const override {
+    return turbulence_ ? Fluid::turbulent_energy() : turbulent_energy_;
+  }
+  std::span<const double> turbulent_dissipation() const override {
+    return turbulence_ ? Fluid::turbulent_dissipation() : turbulent_dissipation_;
+  }
   std::span<const double> temperature() const override { return temperature_; }
   std::span<const double> temperature_change() const override { return temperature_change_; }
+  const Turbulence* turbulence() const override { return turbulence_.get(); }
+  std::vector<Scalar> scalars() const override;
   std::vector<BoundaryFlow> boundary_flow() const override;
   std::vector<StateArray> state() override;
   void restored() override;
 
  private:
   void evaluate(double time);
+  void make_turbulence(Options& options, const std::string& velocity);
+  Turbulence::Flow turbulent_flow() const;
+  /// Returns the linear iterations.
+  int solve_turbulence(double time, double dt);
 
   const Mesh& mesh_;
   VectorExpression velocity_formula_;
@@ -59,6 +70,11 @@ class Prescribed final : public Fluid {
   std::vector<double> mass_;
   NodalGradient gradient_;
   std::vector<FacetRule> facets_;
+  int order_;
+  std::unique_ptr<BoundaryConditions> boundaries_;  ///< of the turbulence
+  std::unique_ptr<Turbulence> turbulence_;
+  std::vector<double> past_;  ///< [nodes][2] steps taken (up to 3), s of the last one; of the turbulence
+  std::vector<double> density_field_, viscosity_field_;
   std::vector<double> velocity_, change_, pressure_, pressure_gradient_, void_fraction_, temperature_,
       temperature_change_, turbulent_energy_, turbulent_dissipation_;
 };

@@ -97,9 +97,9 @@ Vec3 manufactured(const std::string& cell, int n) {
   settings.push_back({"fluid_initial_temperature", T});
   FlowCase flow(settings);
   const Manufactured exact;
-  gas_of(flow).set_source([&](const Vec3& x, double, double& mass, Vec3& momentum, double& energy) {
+  gas_of(flow).set_source([&](const Vec3& x, double, double& mass, Vec3& momentum, double& heat) {
     const auto s = exact.source(x);
-    mass = s[0], momentum = s.segment<3>(1), energy = s[4];
+    mass = s[0], momentum = s.segment<3>(1), heat = s[4] - momentum.dot(Manufactured::u(x));
   });
   for (int s = 0; s < 4; ++s) flow.advance(0.5);
   return {flow.error(flow.fluid->pressure(), 1, [](const Vec3& x) { return Vec3(Manufactured::p(x), 0, 0); }),
@@ -170,6 +170,8 @@ TEST_CASE("the Jacobian is the derivative of the residual, for every cell, bound
     settings.push_back({"fluid_initial_velocity", "0.3 + 0.1*y, 0.1*x, 0.05*x"});
     settings.push_back({"fluid_initial_pressure", "1 + 0.2*x*y"});
     settings.push_back({"fluid_initial_temperature", "1 + 0.1*y"});
+    settings.push_back({"fluid_body_force", "0.3 + x, 0.2*y, -0.1"});
+    settings.push_back({"fluid_heat_source", "0.4*x"});
     FlowCase flow(settings, Vec3(0.2, -0.3, 0));
     auto& load = flow.fluid->load();
     for (int i = 0; i < flow.mesh->nodes; ++i) {
@@ -333,6 +335,33 @@ TEST_CASE("in a steady nozzle flow mass, momentum and energy leave as they enter
   CHECK(std::abs(mass) < 1e-7 * through);
   CHECK(std::abs(energy) < 1e-6 * through);
   CHECK(momentum.norm() < 1e-6);
+}
+
+TEST_CASE("a force speeds the gas up and a source of heat warms it; the work and the heat are what its energy gains",
+          "[fluid][compressible][mpi]") {
+  auto settings = gas("hexahedron", "3, 3, 3");
+  settings.push_back({"mesh_periodic", "1, 1, 1"});
+  settings.push_back({"fluid_order", "1"});
+  settings.push_back({"fluid_initial_pressure", "1.2"});
+  settings.push_back({"fluid_initial_temperature", "0.8"});
+  settings.push_back({"fluid_body_force", "0.3, 0, 0.6*t"});
+  settings.push_back({"fluid_heat_source", "0.5 + t"});
+  FlowCase flow(settings);
+  const double density = 1.2 / 0.8, capacity = 1 / 0.4, dt = 0.01;
+  double energy = density * capacity * 0.8;
+  for (int k = 0; k < 40; ++k) {
+    const FluidStep step = flow.advance(dt);
+    CHECK(step.heat - energy == Approx(dt * step.energy_supply).epsilon(1e-9));
+    energy = step.heat;
+  }
+  const double t = 0.4;
+  for (int i = 0; i < flow.mesh->nodes; ++i) {
+    const double* u = &flow.fluid->velocity()[3 * static_cast<size_t>(i)];
+    CHECK(u[0] == Approx(0.3 * t / density).epsilon(1e-8));
+    CHECK(u[2] == Approx(0.3 * t * (t + dt) / density).epsilon(1e-8));  // the sum of backward Euler
+    CHECK(flow.fluid->temperature()[static_cast<size_t>(i)] ==
+          Approx(0.8 + (0.5 * t + 0.5 * t * t) / (density * capacity)).epsilon(2e-3));
+  }
 }
 
 TEST_CASE("options that do not belong to compressible flow are refused", "[fluid][compressible]") {

@@ -3,6 +3,7 @@
 // the lane type.
 #include "fluid/assembly/flow_data.hpp"
 #include "fluid/assembly/flow_table.hpp"
+#include "fluid/assembly/inverse.hpp"
 #include "fluid/equations/volume_averaged_navier_stokes.hpp"
 
 namespace silt {
@@ -155,24 +156,7 @@ struct FlowPoint {
         J[i][d] = x[0][i] * t.dM[q][0][d];
         for (int a = 1; a < NP; ++a) J[i][d] += x[a][i] * t.dM[q][a][d];
       }
-    if constexpr (dim == 2) {
-      determinant = J[0][0] * J[1][1] - J[0][1] * J[1][0];
-      const V r = 1.0 / determinant;
-      inverse[0][0] = J[1][1] * r;
-      inverse[0][1] = -J[0][1] * r;
-      inverse[1][0] = -J[1][0] * r;
-      inverse[1][1] = J[0][0] * r;
-    } else {
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-          inverse[j][i] = J[i1][j1] * J[i2][j2] - J[i1][j2] * J[i2][j1];
-        }
-      determinant = J[0][0] * inverse[0][0] + J[0][1] * inverse[1][0] + J[0][2] * inverse[2][0];
-      const V r = 1.0 / determinant;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) inverse[i][j] *= r;
-    }
+    determinant = invert(J, inverse);
     for (int a = 0; a < NP; ++a)
       for (int j = 0; j < dim; ++j) {
         gM[a][j] = inverse[0][j] * t.dM[q][a][0];

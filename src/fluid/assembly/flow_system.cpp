@@ -139,13 +139,8 @@ IsHandle FlowSystem::pressure_rows() const {
 }
 
 void FlowSystem::rotate_rows(double* values) const {
-  for (const auto& c : constraints_.constraints()) {
-    if (c.count == dimension_) continue;
-    double* v = values + velocity_place(c.node, 0);
-    Vec3 cartesian = Vec3::Zero();
-    for (int i = 0; i < dimension_; ++i) cartesian[i] = v[i];
-    for (int k = 0; k < dimension_; ++k) v[k] = c.frame[k].dot(cartesian);
-  }
+  to_frames(
+      constraints_, dimension_, [this](int node) { return velocity_place(node, 0); }, values);
 }
 
 void FlowSystem::to_vector(const double* u, const double* p, Vec x) const {
@@ -154,29 +149,14 @@ void FlowSystem::to_vector(const double* u, const double* p, Vec x) const {
     for (int c = 0; c < dimension_; ++c) values[velocity_place(i, c)] = u[3 * static_cast<size_t>(i) + c];
   for (int i = 0; i < mesh_.nodes; ++i) values[pressure_place(i)] = p[i];
   rotate_rows(values.data());
-  double* array;
-  SILT_PETSC(VecGetArrayWrite(local_, &array));
-  std::copy(values.begin(), values.end(), array);
-  SILT_PETSC(VecRestoreArrayWrite(local_, &array));
-  SILT_PETSC(VecScatterBegin(scatter_, local_, x, INSERT_VALUES, SCATTER_REVERSE));
-  SILT_PETSC(VecScatterEnd(scatter_, local_, x, INSERT_VALUES, SCATTER_REVERSE));
+  SILT_PETSC(to_global(values, local_, scatter_, x, INSERT_VALUES));
 }
 
 PetscErrorCode FlowSystem::local_state(Vec x, std::vector<double>& state) const {
   PetscFunctionBeginUser;
-  PetscCall(VecScatterBegin(scatter_, x, local_, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(scatter_, x, local_, INSERT_VALUES, SCATTER_FORWARD));
-  const double* array;
-  PetscCall(VecGetArrayRead(local_, &array));
-  state.assign(array, array + layout_.size);
-  PetscCall(VecRestoreArrayRead(local_, &array));
-  for (const auto& c : constraints_.constraints()) {
-    if (c.count == dimension_) continue;
-    double* v = state.data() + velocity_place(c.node, 0);
-    Vec3 cartesian = Vec3::Zero();
-    for (int k = 0; k < dimension_; ++k) cartesian += v[k] * c.frame[k];
-    for (int i = 0; i < dimension_; ++i) v[i] = cartesian[i];
-  }
+  PetscCall(from_global(x, scatter_, local_, state));
+  from_frames(
+      constraints_, dimension_, [this](int node) { return velocity_place(node, 0); }, state.data());
   PetscFunctionReturn(0);
 }
 
@@ -270,18 +250,13 @@ PetscErrorCode FlowSystem::residual(const StepFields& fields, Vec x, Vec r) cons
   PetscCall(local_state(x, state));
   local_residual(fields, state, values);
   rotate_rows(values.data());
-  double* array;
-  PetscCall(VecGetArrayWrite(local_, &array));
-  std::copy(values.begin(), values.end(), array);
-  PetscCall(VecRestoreArrayWrite(local_, &array));
-  PetscCall(VecSet(r, 0));
-  PetscCall(VecScatterBegin(scatter_, local_, r, ADD_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(scatter_, local_, r, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(to_global(values, local_, scatter_, r, ADD_VALUES));
 
   PetscInt first;
   PetscCall(VecGetOwnershipRange(r, &first, nullptr));
   const double* unknown;
   PetscCall(VecGetArrayRead(x, &unknown));
+  double* array;
   PetscCall(VecGetArray(r, &array));
   for (const auto& c : constraints_.constraints()) {
     if (!space_.owned[c.node]) continue;

@@ -8,7 +8,7 @@
 #include "fluid/assembly/flow_nodes.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
 #include "fluid/space/lagrange_space.hpp"
-#include "fluid/space/velocity_constraints.hpp"
+#include "fluid/space/unknowns.hpp"
 
 namespace silt {
 

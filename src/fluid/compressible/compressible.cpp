@@ -37,6 +37,7 @@ void CompressibleOptions::options(OptionGroup& option) {
       "shocks along mesh lines (Mach disks), which get thicker",
       non_negative);
   option("initial_temperature", initial_temperature, "K, formula in x, y, z");
+  option("heat_source", heat_source, "W/m3 of mixture, formula in x, y, z, t");
 }
 
 Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOptions& fluid, const Vec3& gravity)
@@ -44,7 +45,8 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
       options_([&] {
         CompressibleOptions read;
         options.read("fluid", read);
-        for (const char* name : {"density", "heat_capacity", "conductivity", "expansion", "body_force", "heat_source"})
+        for (const char* name : {"density", "heat_capacity", "conductivity", "expansion", "turbulent_energy_source",
+                                 "turbulent_dissipation_source"})
           if (options.given(std::string("fluid_") + name))
             throw UserError(fmt::format("-fluid_{} has no meaning with -fluid_type compressible", name));
         for (const char* name : {"initial_pressure", "initial_temperature"})
@@ -103,6 +105,7 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
     bad = bad || !(pressure_[i] > 0) || !(temperature_[i] > 0);
   }
   if (mpi_any(bad)) throw UserError("the initial pressure and temperature of a gas must be above 0 everywhere");
+  read_sources(options, fluid);
   choose_units(gravity);
   past_.assign(2 * n, 0.0);
   rate_.assign(n * m, 0.0);
@@ -121,6 +124,15 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
   if (!turbulence_) return;
   turbulence_->start(turbulent_flow());
   take_eddy_viscosity();
+}
+
+void Compressible::read_sources(const Options& options, const FluidOptions& fluid) {
+  if (!options.given("fluid_body_force") && !options.given("fluid_heat_source")) return;
+  const auto force = std::make_shared<VectorExpression>("fluid_body_force", fluid.body_force);
+  const auto warmth = std::make_shared<Expression>("fluid_heat_source", options_.heat_source);
+  source_ = [force, warmth](const Vec3& x, double t, double& mass, Vec3& momentum, double& heat) {
+    mass = 0, momentum = (*force)(x, t), heat = (*warmth)(x, t);
+  };
 }
 
 /// Units of the order of the initial state, so that the rows and the unknowns have comparable sizes.
@@ -224,12 +236,12 @@ void Compressible::prepare(double time, double dt, int order) {
     step_.heat_coefficient[i] = (step_.heat_coefficient[i] + load_.heat_response[i]) * T0_ / (p0_ * u0_);
     if (thermal_.fixed()[i]) step_.prescribed_temperature[i] = thermal_.given(static_cast<int>(i), time + dt) / T0_;
     if (source_) {
-      double mass = 0, energy = 0;
+      double mass = 0, heat = 0;
       Vec3 momentum = Vec3::Zero();
-      source_(vec3(&mesh_.node_coordinates[3 * i]), time + dt, mass, momentum, energy);
+      source_(vec3(&mesh_.node_coordinates[3 * i]), time + dt, mass, momentum, heat);
       step_.source[i * m] = mass * u0_ / p0_;
       for (size_t k = 0; k + 2 < m; ++k) step_.source[i * m + 1 + k] = momentum[static_cast<int>(k)] / p0_;
-      step_.source[i * m + m - 1] = energy / (p0_ * u0_);
+      step_.source[i * m + m - 1] = heat / (p0_ * u0_);
     }
   }
   if (turbulence_ && dt > 0 && !turbulence_->exchange().empty())

@@ -28,6 +28,7 @@ struct CompressibleOptions {
   double expansion_sensor = 1;
   double shock_sensor = 0;
   std::string initial_temperature = "0";
+  std::string heat_source = "0";
   void options(OptionGroup& option);
 };
 
@@ -56,8 +57,9 @@ class Compressible final : public Fluid {
   std::vector<StateArray> state() override;
   void restored() override;
 
-  /// Sources per volume of mass (kg/m3/s), momentum (N/m3) and energy (W/m3), for tests.
-  using Source = std::function<void(const Vec3& x, double t, double& mass, Vec3& momentum, double& energy)>;
+  /// Sources per volume of mixture: mass (kg/m3/s, for tests), momentum (N/m3), which does its work on the gas, and
+  /// heat (W/m3); `-fluid_body_force` and `-fluid_heat_source` set them.
+  using Source = std::function<void(const Vec3& x, double t, double& mass, Vec3& momentum, double& heat)>;
   void set_source(Source source) { source_ = std::move(source); }
   /// Residual norms of the Newton iterations of the last step.
   const std::vector<double>& newton_norms() const { return newton_.norms(); }
@@ -66,6 +68,7 @@ class Compressible final : public Fluid {
 
  private:
   void choose_units(const Vec3& gravity);
+  void read_sources(const Options& options, const FluidOptions& fluid);
   Bdf difference(double dt, int order) const;
   void prepare(double time, double dt, int order);
   void set_outside(double time, double dt);

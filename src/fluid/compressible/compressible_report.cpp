@@ -87,6 +87,17 @@ FluidStep Compressible::report() const {
     step.energy_supply -= around * p0_ * u0_ * flow.energy;
   }
   for (int i = 0; i < mesh_.dimension; ++i) step.energy_supply += step_.gravity[i] * u0_ * u0_ * step.momentum[i];
+  if (source_) {
+    const size_t m = system_.size();
+    double given = 0;
+    for (size_t i = 0; i < static_cast<size_t>(mesh_.owned_nodes); ++i) {
+      const double* source = &step_.source[i * m];
+      double power = source[m - 1];
+      for (size_t k = 1; k + 1 < m; ++k) power += source[k] * state_[i * m + k];
+      given += system_.weights()[i] * power;
+    }
+    step.energy_supply += around * p0_ * u0_ * mpi_sum(given);
+  }
   if (turbulence_ && !turbulence_->exchange().empty()) {
     double taken = 0;
     for (int i = 0; i < mesh_.owned_nodes; ++i) taken += turbulence_->exchange()[static_cast<size_t>(i)];

@@ -2,6 +2,7 @@
 // one instruction set only packs are used, so that no code for a newer machine can replace another's.
 #pragma once
 #include "fluid/assembly/flow_table.hpp"
+#include "fluid/assembly/inverse.hpp"
 #include "fluid/compressible/gas.hpp"
 
 namespace silt {
@@ -14,7 +15,7 @@ struct GasCell {
   GasState<V, dim> state[nodes];
   V alpha[nodes], alpha_rate[nodes];
   V known[nodes][size];   ///< history of the rate of change
-  V source[nodes][size];  ///< given, per volume
+  V source[nodes][size];  ///< given, per volume: mass, momentum (which does work), heat
   double rate = 0;        ///< factor of U^{n+1} in the rate of change
   double gravity[3] = {};
   bool axisymmetric = false;  ///< y is the distance from the axis
@@ -38,24 +39,7 @@ struct GasPoint {
       for (int i = 0; i < dim; ++i)
         for (int d = 0; d < dim; ++d) J[i][d] += cell.x[a][i] * dM[a][d];
     }
-    V determinant;
-    if constexpr (dim == 2) {
-      determinant = J[0][0] * J[1][1] - J[0][1] * J[1][0];
-      const V r = 1.0 / determinant;
-      inverse[0][0] = J[1][1] * r, inverse[0][1] = -J[0][1] * r, inverse[1][0] = -J[1][0] * r,
-      inverse[1][1] = J[0][0] * r;
-    } else {
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-          inverse[j][i] = J[i1][j1] * J[i2][j2] - J[i1][j2] * J[i2][j1];
-        }
-      determinant = J[0][0] * inverse[0][0] + J[0][1] * inverse[1][0] + J[0][2] * inverse[2][0];
-      const V r = 1.0 / determinant;
-      for (auto& row : inverse)
-        for (V& v : row) v *= r;
-    }
-    volume = determinant * weight;
+    volume = invert(J, inverse) * weight;
     if (cell.axisymmetric) volume *= radius;
     for (int a = 0; a < nodes; ++a)
       for (int j = 0; j < dim; ++j) {
@@ -86,7 +70,7 @@ struct GasNodes {
       }
       for (int i = 0; i < dim; ++i) {
         rate[a][1 + i] -= cell.gravity[i] * U[a][0];
-        rate[a][dim + 1] -= cell.gravity[i] * U[a][1 + i];
+        rate[a][dim + 1] -= cell.gravity[i] * U[a][1 + i] + cell.source[a][1 + i] * cell.state[a].u[i];
       }
     }
   }
@@ -268,6 +252,7 @@ void gas_cell(const GasCell<C, V>& cell, const GasLaw& gas, const FlowTable& tab
         B[dim + 1][l] -= cell.gravity[i] * A0[1 + i][l];
       }
     }
+    for (int i = 0; i < dim; ++i) B[dim + 1][1 + i] -= cell.source[b][1 + i];
     for (int a = 0; a < nodes; ++a) {
       V X[dim][size][size];
       for (int i = 0; i < dim; ++i)

@@ -118,44 +118,22 @@ MatHandle GasSystem::create_matrix() const {
   return matrix;
 }
 
-/// Turns the velocity part of nodal values into the frames of the constraints; frames are orthonormal, so residuals and
-/// unknowns turn alike.
 void GasSystem::to_frames(double* values) const {
-  for (const auto& c : constraints_.constraints()) {
-    if (c.count == dimension_) continue;
-    double* v = values + static_cast<size_t>(c.node) * size() + 1;
-    Vec3 cartesian = Vec3::Zero();
-    for (int i = 0; i < dimension_; ++i) cartesian[i] = v[i];
-    for (int k = 0; k < dimension_; ++k) v[k] = c.frame[k].dot(cartesian);
-  }
+  silt::to_frames(
+      constraints_, dimension_, [this](int node) { return velocity_place(node); }, values);
 }
 
 void GasSystem::to_vector(const std::vector<double>& state, Vec x) const {
   std::vector<double> values = state;
   to_frames(values.data());
-  double* array;
-  SILT_PETSC(VecGetArrayWrite(local_, &array));
-  std::copy(values.begin(), values.end(), array);
-  SILT_PETSC(VecRestoreArrayWrite(local_, &array));
-  SILT_PETSC(VecScatterBegin(scatter_, local_, x, INSERT_VALUES, SCATTER_REVERSE));
-  SILT_PETSC(VecScatterEnd(scatter_, local_, x, INSERT_VALUES, SCATTER_REVERSE));
+  SILT_PETSC(to_global(values, local_, scatter_, x, INSERT_VALUES));
 }
 
 PetscErrorCode GasSystem::from_vector(Vec x, std::vector<double>& state) const {
   PetscFunctionBeginUser;
-  PetscCall(VecScatterBegin(scatter_, x, local_, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(scatter_, x, local_, INSERT_VALUES, SCATTER_FORWARD));
-  const double* array;
-  PetscCall(VecGetArrayRead(local_, &array));
-  state.assign(array, array + static_cast<size_t>(mesh_.nodes) * size());
-  PetscCall(VecRestoreArrayRead(local_, &array));
-  for (const auto& c : constraints_.constraints()) {
-    if (c.count == dimension_) continue;
-    double* v = state.data() + static_cast<size_t>(c.node) * size() + 1;
-    Vec3 cartesian = Vec3::Zero();
-    for (int k = 0; k < dimension_; ++k) cartesian += v[k] * c.frame[k];
-    for (int i = 0; i < dimension_; ++i) v[i] = cartesian[i];
-  }
+  PetscCall(from_global(x, scatter_, local_, state));
+  from_frames(
+      constraints_, dimension_, [this](int node) { return velocity_place(node); }, state.data());
   PetscFunctionReturn(0);
 }
 
@@ -176,17 +154,12 @@ PetscErrorCode GasSystem::residual(const GasStep& step, Vec x, Vec r) const {
   PetscCall(assemble(step, state, values.data(), nullptr));
   add_wall_work(step, values.data());
   to_frames(values.data());
-  double* array;
-  PetscCall(VecGetArrayWrite(local_, &array));
-  std::copy(values.begin(), values.end(), array);
-  PetscCall(VecRestoreArrayWrite(local_, &array));
-  PetscCall(VecSet(r, 0));
-  PetscCall(VecScatterBegin(scatter_, local_, r, ADD_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(scatter_, local_, r, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(to_global(values, local_, scatter_, r, ADD_VALUES));
   PetscInt first;
   PetscCall(VecGetOwnershipRange(r, &first, nullptr));
   const double* unknown;
   PetscCall(VecGetArrayRead(x, &unknown));
+  double* array;
   PetscCall(VecGetArray(r, &array));
   for (const auto& c : constraints_.constraints()) {
     if (c.node >= mesh_.owned_nodes) continue;

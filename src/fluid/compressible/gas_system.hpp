@@ -6,7 +6,7 @@
 #include "fluid/compressible/gas_loop.hpp"
 #include "fluid/compressible/open_boundary.hpp"
 #include "fluid/space/lagrange_space.hpp"
-#include "fluid/space/velocity_constraints.hpp"
+#include "fluid/space/unknowns.hpp"
 
 namespace silt {
 
@@ -17,7 +17,7 @@ struct GasStep {
   double gravity[3] = {};
   bool axisymmetric = false;
   std::vector<double> known;   ///< [nodes][size] the rest of the rate
-  std::vector<double> source;  ///< [nodes][size] per volume
+  std::vector<double> source;  ///< [nodes][size] per volume: mass, momentum (which does work), heat
   std::vector<double> alpha, alpha_rate;
   std::vector<double> force;         ///< [nodes][size] what acts at the nodes: momentum, and heat in the last place
   std::vector<double> response;      ///< [nodes] kg/s of the particles, on u - u^n
@@ -86,6 +86,7 @@ class GasSystem {
   void shape_at(size_t facet, int q, double* N, double (*gradient)[3]) const;
   PetscErrorCode assemble(const GasStep& step, const std::vector<double>& state, double* residual, Mat matrix) const;
   void nodes(const GasStep& step, const std::vector<double>& state, double* residual) const;
+  size_t velocity_place(int node) const { return static_cast<size_t>(node) * size() + 1; }
   void to_frames(double* values) const;
   void add_wall_work(const GasStep& step, double* residual) const;
   void constrain(const GasStep& step, int count, const int* nodes, double* matrix) const;

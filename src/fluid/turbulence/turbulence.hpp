@@ -82,7 +82,7 @@ class Turbulence {
                              std::vector<double>& force) const;
 
   /// Sources added to the equations, W/m3 and density times the unit of the second quantity per second, not divided
-  /// among the phases; null: none. For manufactured solutions.
+  /// among the phases; null: none (`-fluid_turbulent_energy_source`, `-fluid_turbulent_dissipation_source`).
   std::function<double(const Vec3&x, double t)> energy_source, second_source;
 
   /// For output: k, epsilon or omega, eddy viscosity, wall distance.

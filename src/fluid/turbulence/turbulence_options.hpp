@@ -13,6 +13,7 @@ struct TurbulenceOptions {
   int iterations = 1;
   double largest_ratio = 1e6;
   std::string initial_energy = "0", initial_viscosity_ratio = "10";
+  std::string energy_source = "0", dissipation_source = "0";
   void options(OptionGroup& option) {
     option("turbulence", turbulence, {"none", "realizable_k_epsilon", "sst_k_omega", "smagorinsky", "wale"},
            "turbulence model; none: laminar flow, or all scales resolved");
@@ -26,6 +27,10 @@ struct TurbulenceOptions {
            "m2/s2, formula in x, y, z: turbulent kinetic energy at the start");
     option("initial_viscosity_ratio", initial_viscosity_ratio,
            "formula in x, y, z: eddy viscosity over viscosity at the start");
+    option("turbulent_energy_source", energy_source,
+           "W/m3 of mixture, formula in x, y, z, t: what something that is not resolved (a grid, a stirrer) adds to k");
+    option("turbulent_dissipation_source", dissipation_source,
+           "formula in x, y, z, t: the same for epsilon, W/(m3 s) of mixture, or omega, kg/(m3 s2)");
   }
 };
 

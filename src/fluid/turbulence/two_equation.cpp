@@ -37,6 +37,15 @@ TwoEquation<Model>::TwoEquation(const Mesh& mesh, Options& options, const Turbul
     field->assign(mesh.nodes, 0.0);
   cell_eddy_viscosity_.assign(mesh.cells, 0.0);
   wall_y_plus_.assign(mesh.cells, 0.0);
+  const auto source = [&options](const std::string& name, const std::string& text) {
+    std::function<double(const Vec3&, double)> formula;
+    if (!options.given(name)) return formula;
+    const auto expression = std::make_shared<Expression>(name, text);
+    formula = [expression](const Vec3& x, double t) { return (*expression)(x, t); };
+    return formula;
+  };
+  energy_source = source("fluid_turbulent_energy_source", read.energy_source);
+  second_source = source("fluid_turbulent_dissipation_source", read.dissipation_source);
 }
 
 template <class Model>
