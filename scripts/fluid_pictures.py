@@ -21,11 +21,13 @@ import numpy
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import matplotlib.tri as tri  # noqa: E402
+from matplotlib.ticker import MaxNLocator  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FOLDER = os.path.join(ROOT, "docs", "gallery", "fluid")
 # What of a mesh is worth seeing, where that is not all of it: heights, m.
-HEIGHTS = {"flat_plate": (0, 0.05), "flat_plate_fine": (0, 0.05)}
+HEIGHTS = {"flat_plate": (0, 0.05), "flat_plate_fine": (0, 0.05), "jet_k_epsilon": (0, 0.004), "round_jet": (0, 0.2)}
+SINGULAR = ("flat_plate", "flat_plate_fine")  # corners without an end to the speed
 # One picture of the errors for cases that differ in the cell or the model.
 FAMILIES = {
     "orders_gas": ("manufactured_triangle_gas", "manufactured_quadrilateral_gas", "manufactured_tetrahedron_gas", "manufactured_hexahedron_gas"),
@@ -70,10 +72,11 @@ def picture(name, title, output):
         mesh2 = tri.Triangulation(x, y)
     else:
         mesh2 = tri.Triangulation(points[:, 0], points[:, 1], triangles(cells))
+    millimetres = numpy.ptp(mesh2.x) < 0.05
     width, height = numpy.ptp(mesh2.x), numpy.ptp(mesh2.y)
     size = (4.8, 3.0 if name in HEIGHTS else min(4.2, max(1.5, 4.0 * height / width + 0.8)))
     figure, axes = plt.subplots(figsize=size, dpi=80)
-    lowest, highest = values.min(), numpy.percentile(values, 95 if name in HEIGHTS else 99.9)  # singular corners have no end
+    lowest, highest = values.min(), numpy.percentile(values, 95 if name in SINGULAR else 99.9)
     if highest - lowest < 1e-3 * abs(highest):  # uniform: no colours for rounding errors
         lowest, highest = 0, 1.5 * highest
     drawn = axes.tripcolor(mesh2, values, shading="gouraud", cmap="viridis", vmin=lowest, vmax=highest)
@@ -81,8 +84,10 @@ def picture(name, title, output):
     axes.set_aspect("equal" if max(width, height) < 12 * min(width, height) and height < 2 * width and name not in HEIGHTS else "auto")
     if name in HEIGHTS:
         axes.set_ylim(*HEIGHTS[name])
-    axes.set_xlabel("x, m")
-    axes.set_ylabel("y, m")
+    for axis, label in ((axes.xaxis, "x"), (axes.yaxis, "y")):
+        axis.set_major_locator(MaxNLocator(5))
+        axis.set_major_formatter(lambda value, _: f"{1000 * value if millimetres else value:g}")
+        axis.set_label_text(f"{label}, {'mm' if millimetres else 'm'}")
     figure.tight_layout()
     figure.savefig(os.path.join(FOLDER, name + ".png"))
     plt.close(figure)
