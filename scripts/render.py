@@ -62,6 +62,11 @@ def nice_top(value):
     return next(m * power for m in (1, 1.5, 2, 3, 4, 5, 6, 8, 10) if m * power >= value * 0.999)
 
 
+def letters(view, size):
+    """A size of letters that is meant for a view 800 pixels wide: narrower views have smaller ones, or words are cut off."""
+    return max(6, round(size * min(1, view.ViewSize[0] / 800)))
+
+
 def colour(display, view, name, title, low, high, preset, position, vector):
     ColorBy(display, ("POINTS", name, "Magnitude") if vector else ("POINTS", name))
     table = GetColorTransferFunction(name, display, separate=True)
@@ -74,10 +79,10 @@ def colour(display, view, name, title, low, high, preset, position, vector):
     bar = GetScalarBar(table, view)
     bar.Title, bar.ComponentTitle = title, ""
     bar.TitleColor = bar.LabelColor = INK
-    bar.TitleFontSize, bar.LabelFontSize = 20, 18
+    bar.TitleFontSize, bar.LabelFontSize = letters(view, 20), letters(view, 18)
     bar.HorizontalTitle = True
     bar.Orientation, bar.WindowLocation, bar.Position = "Vertical", "Any Location", position
-    bar.ScalarBarLength, bar.ScalarBarThickness = 0.4, 22
+    bar.ScalarBarLength, bar.ScalarBarThickness = 0.4, letters(view, 22)
     bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = False, "%.3g", "%.3g"
     bar.Visibility = True
     return bar
@@ -133,7 +138,7 @@ def look(view, box, axis, tilt):
 def caption(view, text, place="Upper Center"):
     words = Text(Text=text)
     shown = Show(words, view)
-    shown.WindowLocation, shown.FontSize, shown.Color, shown.Bold = place, 22, INK, 0
+    shown.WindowLocation, shown.FontSize, shown.Color, shown.Bold = place, letters(view, 22), INK, 0
 
 
 def draw_particles(particles, view, box, axis, time):
@@ -156,8 +161,8 @@ def draw_particles(particles, view, box, axis, time):
         shown.DiffuseColor = [0.8, 0.6, 0.35]
     count = particles.GetDataInformation().GetNumberOfPoints()
     outline(box, view)
-    look(view, box, axis, 0.22)
-    caption(view, f"{count} particles, t = {time:.4g} s")
+    look(view, box, axis, 0.22 if box[2 * axis + 1] > box[2 * axis] else 0.0)  # a plane is not looked at askew
+    caption(view, f"{count} particle{'s' if count != 1 else ''}, t = {time:.4g} s")
 
 
 def robust_top(source, name):
