@@ -55,6 +55,19 @@ TEST_CASE("Every vector width of the element loops gives the same flow", "[fluid
   }
 }
 
+TEST_CASE("A force that is nothing beside the momentum of the flow moves it all the same", "[fluid][mpi]") {
+  // In a step the force gives 1e-6 of what the equation's right-hand side holds, a tenth of the default tolerance.
+  FlowCase flow({{"mesh_cells", "3, 3, 3"},
+                 {"mesh_periodic", "1, 1, 1"},
+                 {"fluid_density", "2"},
+                 {"fluid_viscosity", "1e-3"},
+                 {"fluid_initial_velocity", "100, 0, 0"},
+                 {"fluid_body_force", "0, 0.02, 0"}});
+  for (int n = 0; n < 20; ++n) flow.advance(0.01);
+  for (int i = 0; i < flow.mesh->nodes; ++i)
+    CHECK(flow.fluid->velocity()[3 * static_cast<std::size_t>(i) + 1] == Approx(0.01 * 0.2).epsilon(1e-3));
+}
+
 TEST_CASE("A step that fails leaves the flow as it was", "[fluid][mpi]") {
   FlowCase flow(stirred_box()), twin(stirred_box(), Vec3::Zero(), flow.mesh);
   for (int k = 0; k < 3; ++k) flow.advance(0.05), twin.advance(0.05);

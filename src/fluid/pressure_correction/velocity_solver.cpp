@@ -11,6 +11,9 @@ namespace silt {
 namespace {
 
 constexpr int most_iterations = 200;
+/// Least gain on the first residual: a force too weak to show beside b would be lost anew in every step.
+constexpr double least_gain = 1e-2;
+constexpr double least_residual = 1e-10;  ///< of b; below that nothing more is gained for its own sake
 
 template <std::size_t count>
 std::array<double, count> sum_ranks(std::array<double, count> local) {
@@ -35,7 +38,8 @@ int VelocitySolver::solve(const NodalMatrix& matrix, const std::vector<double>& 
   for (std::size_t i = 0; i < owned; ++i) norms[0] += r_[i] * r_[i], norms[1] += t_[i] * t_[i];
   norms = sum_ranks(norms);
   double residual = norms[0];
-  const double goal = tolerance * tolerance * std::max(norms[0], norms[1]);
+  const double gained = std::max(least_gain * least_gain * norms[0], least_residual * least_residual * norms[1]);
+  const double goal = std::min(tolerance * tolerance * std::max(norms[0], norms[1]), gained);
   if (!std::isfinite(goal)) throw SolveFailure("the velocity equation holds non-finite values");
 
   double rho = 1, step = 1, omega = 1;

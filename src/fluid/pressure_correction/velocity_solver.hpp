@@ -15,8 +15,9 @@ class VelocitySolver {
   explicit VelocitySolver(const Mesh& mesh) : mesh_(mesh) {}
 
   /// Solves A u = b from the u given, which holds the prescribed values, to `tolerance` relative to the larger of b and
-  /// the first residual. b and u [nodes][3], consistent on shared nodes. Returns the iterations; throws SolveFailure.
-  /// Collective.
+  /// the first residual, and at least to a hundredth of the first residual: b holds the whole flow, and what the step
+  /// changes may be less than its tolerance. b and u [nodes][3], consistent on shared nodes. Returns the iterations;
+  /// throws SolveFailure. Collective.
   int solve(const NodalMatrix& matrix, const std::vector<double>& diagonal, const BoundaryConditions& boundaries,
             const std::vector<double>& right, std::vector<double>& u, double tolerance);
 
