@@ -14,6 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import flow_law_pictures
+import history_pictures
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 OUT = os.path.join(ROOT, "docs", "models")
@@ -289,10 +290,10 @@ def draw_scenes(silt):
 
 
 def main():
-    silt, wanted = os.path.abspath(sys.argv[1]), sys.argv[2:] or ["laws", "fields", "flows", "scenes"]
+    silt, wanted = os.path.abspath(sys.argv[1]), sys.argv[2:] or ["laws", "fields", "flows", "histories", "scenes"]
     os.makedirs(OUT, exist_ok=True)
     for word in wanted:
-        {"laws": draw_laws, "fields": draw_fields, "flows": flow_law_pictures.draw, "scenes": draw_scenes}[word](silt)
+        {"laws": draw_laws, "fields": draw_fields, "flows": flow_law_pictures.draw, "histories": history_pictures.draw, "scenes": draw_scenes}[word](silt)
 
 
 if __name__ == "__main__":

@@ -81,6 +81,7 @@ def page(silt):
             if pictured and slot not in drawn:
                 lines += [f"![each {slot} law](models/{slot}.png)", ""]
                 lines += ["![Clausius and Mossotti's factor](models/polarisation.png)", ""] if slot == "electric" else []
+                lines += ["![a source of heat](models/heat_source.png)", ""] if slot == "heat" else []
                 drawn.add(slot)
             line += " verified by |"
         elif line.startswith("|---"):
