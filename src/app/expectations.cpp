@@ -53,6 +53,23 @@ double frequency(const std::vector<double>& times, const std::vector<double>& va
   return static_cast<double>(crossings.size() - 1) / (crossings.back() - crossings.front());
 }
 
+/// Distance from the first point, m, of the middle of the steepest rise (sign 1) or fall (-1) of values `spacing` m
+/// apart. Between the nodes of a mesh a field is linear: all intervals of that slope count as one.
+double steepest(const std::vector<double>& values, double spacing, double sign) {
+  double most = 0;
+  size_t first = 0, last = 0;
+  for (size_t k = 0; k + 1 < values.size(); ++k) {
+    const double rise = sign * (values[k + 1] - values[k]);
+    if (rise > most * (1 + 1e-3)) {
+      most = rise;
+      first = last = k;
+    } else if (most > 0 && k == last + 1 && rise > most * (1 - 1e-3)) {
+      last = k;
+    }
+  }
+  return most > 0 ? spacing * (0.5 * static_cast<double>(first + last) + 0.5) : unknown;
+}
+
 Expectations::Verdict judged(const ExpectationOptions& options, double expected, double computed, double difference) {
   const double size = options.mode == "relative" ? std::abs(expected) : 1;
   double error = std::abs(difference) / size;
@@ -80,8 +97,11 @@ void ExpectationOptions::options(OptionGroup& option) {
   option("tolerance", tolerance, "", "largest error allowed", non_negative);
   option("mode", mode, {"relative", "absolute", "at_least", "at_most"},
          "how the error is taken; at_least and at_most: only what falls short or exceeds counts");
-  option("statistic", statistic, {"last", "mean", "minimum", "maximum", "amplitude", "frequency", "rate"},
-         "what is taken over the window; without window: of the whole run");
+  option(
+      "statistic", statistic,
+      {"last", "mean", "minimum", "maximum", "amplitude", "frequency", "rate", "steepest_rise", "steepest_fall"},
+      "what is taken over the window (without window: of the whole run), or along a line: mean, minimum, maximum, or "
+      "the distance in m from its start where the quantity rises or falls most steeply (where a shock stands)");
   option("at", at, "s", "time at which the quantity is taken, interpolated between steps");
   option("window", window, "s", "from, to: stretch of time over which the statistic (default: mean) is taken");
   option("factor", factor, "-", "what the computed figure is multiplied with before it is compared");
@@ -130,6 +150,10 @@ Expectations::Expectations(Options& options, const std::vector<std::string>& thr
       throw UserError(fmt::format("-{}: one of value and values must be given", prefix));
     if (!given.values.empty() && !item.along)
       throw UserError(fmt::format("-{}_values: '{}' is one number, use value", prefix, given.quantity));
+    const bool place = given.statistic.starts_with("steepest");
+    if (!item.along && place)
+      throw UserError(fmt::format("-{}_statistic {}: '{}' is not a quantity along a line", prefix, given.statistic,
+                                  given.quantity));
     if (!given.tolerance) throw UserError(fmt::format("-{}_tolerance must be given", prefix));
     if (!given.window.empty() && (given.window.size() != 2 || given.window[0] >= given.window[1]))
       throw UserError(fmt::format("-{}_window must be two increasing times in s", prefix));
@@ -142,11 +166,11 @@ Expectations::Expectations(Options& options, const std::vector<std::string>& thr
       throw UserError(fmt::format("-{}: at is one moment and has no statistic; give a window", prefix));
     if (item.along && !given.statistic.empty() &&
         (!given.values.empty() ||
-         (given.statistic != "mean" && given.statistic != "minimum" && given.statistic != "maximum")))
-      throw UserError(
-          fmt::format("-{}_statistic: '{}' lies along a line; of it there are the mean, minimum and maximum, and the "
-                      "values themselves without a statistic",
-                      prefix, given.quantity));
+         !(place || given.statistic == "mean" || given.statistic == "minimum" || given.statistic == "maximum")))
+      throw UserError(fmt::format(
+          "-{}_statistic: '{}' lies along a line; of it there are the mean, minimum and maximum, the place of "
+          "the steepest_rise and steepest_fall, and the values themselves without a statistic",
+          prefix, given.quantity));
     if (given.mode == "relative" && given.value && *given.value == 0)
       throw UserError(fmt::format("-{}: a relative error from 0 has no meaning, use mode: absolute", prefix));
     items_.push_back(std::move(item));
@@ -228,16 +252,18 @@ Expectations::Verdict Expectations::verdict(const ExpectationOptions& options, c
   return judged(options, *options.value, computed, computed - *options.value);
 }
 
-Expectations::Verdict Expectations::verdict_along(const ExpectationOptions& options,
-                                                  const std::vector<double>& values) {
-  if (values.empty() || !numbers(values)) return judged(options, options.value.value_or(0), unknown, unknown);
+Expectations::Verdict Expectations::verdict_along(const ExpectationOptions& options, const std::vector<double>& values,
+                                                  double spacing) {
+  if (values.empty()) return judged(options, options.value.value_or(0), unknown, unknown);
   const double count = static_cast<double>(values.size());
   const double average = options.factor * std::accumulate(values.begin(), values.end(), 0.0) / count;
   if (options.value) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    const double computed = options.statistic == "minimum"   ? options.factor * *low
-                            : options.statistic == "maximum" ? options.factor * *high
-                                                             : average;
+    const double computed = options.statistic == "minimum"         ? options.factor * *low
+                            : options.statistic == "maximum"       ? options.factor * *high
+                            : options.statistic == "steepest_rise" ? options.factor * steepest(values, spacing, 1)
+                            : options.statistic == "steepest_fall" ? options.factor * steepest(values, spacing, -1)
+                                                                   : average;
     return judged(options, *options.value, computed, computed - *options.value);
   }
   const double expected = std::accumulate(options.values.begin(), options.values.end(), 0.0) / options.values.size();
@@ -254,11 +280,17 @@ bool Expectations::judge(const OutputDirectory& directory, const Probes& probes,
   std::string table = "case,name,quantity,expected,computed,error,tolerance,mode,result,source\n";
   for (const auto& item : items_) {
     std::vector<double> along;
+    double spacing = 0;
     if (item.along) {
       along = probes.line(item.options.quantity);
-      if (along.empty()) along = profiles.values(item.options.quantity);
+      spacing = probes.spacing(item.options.quantity);
+      if (along.empty()) {
+        along = profiles.values(item.options.quantity);
+        spacing = profiles.spacing(item.options.quantity);
+      }
     }
-    const Verdict v = item.along ? verdict_along(item.options, along) : verdict(item.options, item.times, item.values);
+    const Verdict v =
+        item.along ? verdict_along(item.options, along, spacing) : verdict(item.options, item.times, item.values);
     all = all && v.pass;
     const char* result = v.pass ? "PASS" : "FAIL";
     if (mpi_rank() == 0)

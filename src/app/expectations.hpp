@@ -34,7 +34,9 @@ struct ExpectationOptions {
 /// Through time: the value `at` a time (interpolated), or a `statistic` over a `window`: mean, minimum, maximum,
 /// amplitude (half of maximum less minimum), frequency (upward crossings of the mean, Hz), rate (change per second
 /// between the ends of the window); without either the last one.
-/// Along a line: the mean absolute difference from `values`, or the mean (minimum, maximum) against `value`.
+/// Along a line: the mean absolute difference from `values`, or against `value` the mean, the minimum, the maximum, or
+/// the distance in m from the first point where the quantity rises or falls most steeply (steepest_rise,
+/// steepest_fall).
 class Expectations {
  public:
   /// Reads the options; `through_time` and `along_lines` are the quantities there are. Throws UserError with the
@@ -54,14 +56,15 @@ class Expectations {
   /// `expectations.csv`; true when all are met. Collective.
   bool judge(const OutputDirectory& directory, const Probes& probes, const Profiles& profiles) const;
 
-  /// Computed figure and error of one expectation, from a history or from values along a line.
+  /// Computed figure and error of one expectation, from a history or from values along a line, `spacing` m apart.
   struct Verdict {
     double expected, computed, error;
     bool pass;
   };
   static Verdict verdict(const ExpectationOptions& options, const std::vector<double>& times,
                          const std::vector<double>& values);
-  static Verdict verdict_along(const ExpectationOptions& options, const std::vector<double>& values);
+  static Verdict verdict_along(const ExpectationOptions& options, const std::vector<double>& values,
+                               double spacing = 1);
 
  private:
   struct Item {

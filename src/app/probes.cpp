@@ -134,4 +134,10 @@ std::vector<double> Probes::line(const std::string& column) const {
   return values;
 }
 
+double Probes::spacing(const std::string& column) const {
+  for (const auto& item : lines_)
+    if (column.starts_with(item.name + ".")) return (item.points.points()[1] - item.points.points()[0]).norm();
+  return 0;
+}
+
 }  // namespace silt

@@ -57,6 +57,8 @@ class Probes {
   std::vector<std::string> line_columns() const;
   /// The values along a line as last written; empty when there is no such `<line>.<column>`.
   std::vector<double> line(const std::string& column) const;
+  /// m between the points of that line; 0 when there is none.
+  double spacing(const std::string& column) const;
 
  private:
   struct Item {

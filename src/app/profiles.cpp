@@ -215,4 +215,11 @@ std::vector<double> Profiles::values(const std::string& column) const {
   return result;
 }
 
+double Profiles::spacing(const std::string& column) const {
+  for (const auto& item : items_)
+    if (column.starts_with(item.name + ".") && item.boxes.size() > 1)
+      return (item.boxes[1].centre - item.boxes[0].centre).norm();
+  return 0;
+}
+
 }  // namespace silt

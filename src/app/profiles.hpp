@@ -45,6 +45,8 @@ class Profiles {
   std::vector<std::string> columns() const;
   /// The averages along a profile as last written; empty when there is no such `<profile>.<column>`.
   std::vector<double> values(const std::string& column) const;
+  /// m between the boxes or rings of that profile; 0 when there is none.
+  double spacing(const std::string& column) const;
 
  private:
   struct Box {

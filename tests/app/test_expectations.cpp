@@ -100,6 +100,30 @@ TEST_CASE("along a line the mean absolute difference counts", "[app]") {
   CHECK_FALSE(Expectations::verdict_along(options, {}).pass);
 }
 
+TEST_CASE("a shock stands where the quantity changes most steeply along the line", "[app]") {
+  std::vector<double> pressure, speed, linear;
+  for (int k = 0; k <= 100; ++k) {
+    const double x = 0.01 * k;
+    pressure.push_back(3 + 2 * std::tanh((x - 0.335) / 0.05) - 0.5 * x);
+    speed.push_back(-pressure.back());
+    linear.push_back(std::min(1.0, std::max(0.0, (x - 0.2) / 0.1)));  // one cell from 0.2 to 0.3
+  }
+  auto options = expected(0.335, 1e-9);
+  options.statistic = "steepest_rise";
+  CHECK(Expectations::verdict_along(options, pressure, 0.01).pass);
+  options.factor = 1000;  // in mm
+  options.value = 335;
+  CHECK(Expectations::verdict_along(options, pressure, 0.01).pass);
+  options = expected(0.335, 1e-9);
+  options.statistic = "steepest_fall";
+  CHECK(Expectations::verdict_along(options, speed, 0.01).pass);
+  options.value = 0.25;
+  options.statistic = "steepest_rise";
+  CHECK(Expectations::verdict_along(options, linear, 0.01).pass);
+  options.statistic = "steepest_fall";  // it falls nowhere: no place is no pass
+  CHECK_FALSE(Expectations::verdict_along(options, linear, 0.01).pass);
+}
+
 TEST_CASE("an expectation that cannot be judged is refused before the run", "[app]") {
   CHECK(refusal({{"quantity", "pressure_drop"}, {"value", "3"}, {"tolerance", "0.1"}}).empty());
   CHECK(refusal({{"quantity", "presure_drop"}, {"value", "3"}, {"tolerance", "0.1"}})
@@ -114,6 +138,12 @@ TEST_CASE("an expectation that cannot be judged is refused before the run", "[ap
       refusal({{"quantity", "pressure_drop"}, {"value", "1"}, {"tolerance", "0.1"}, {"window", "1,2"}, {"at", "1"}})
           .empty());
   CHECK(refusal({{"quantity", "wall.velocity_x"}, {"values", "1,2"}, {"tolerance", "0.1"}}).empty());
+  CHECK(refusal({{"quantity", "wall.velocity_x"}, {"value", "1"}, {"tolerance", "1"}, {"statistic", "steepest_rise"}})
+            .empty());
+  CHECK(refusal({{"quantity", "wall.velocity_x"}, {"value", "1"}, {"tolerance", "1"}, {"statistic", "frequency"}})
+            .find("no meaning along a line") != std::string::npos);
+  CHECK(refusal({{"quantity", "pressure_drop"}, {"value", "1"}, {"tolerance", "1"}, {"statistic", "steepest_rise"}})
+            .find("not a quantity along a line") != std::string::npos);
 }
 
 TEST_CASE("what an expectation could not heed is refused instead of left out", "[app]") {

@@ -31,11 +31,11 @@ void CompressibleOptions::options(OptionGroup& option) {
   option("expansion_sensor", expansion_sensor, "-",
          "factor of the viscosity on expansions by more than a factor of 2.3 within a cell (nozzle lips)",
          non_negative);
-  option(
-      "shock_sensor", shock_sensor, "-",
-      "factor of a first-order viscosity on compressions by more than a factor of 1.2 within a cell: steadies strong "
-      "shocks along mesh lines (Mach disks), which get thicker",
-      non_negative);
+  option("shock_sensor", shock_sensor, "-",
+         "factor of a first-order viscosity on compressions by more than a factor of 1.2 within a cell, along the "
+         "shock, not "
+         "through it: steadies strong shocks along mesh lines (Mach disks)",
+         non_negative);
   option("initial_temperature", initial_temperature, "K, formula in x, y, z");
   option("heat_source", heat_source, "W/m3 of mixture, formula in x, y, z, t");
 }
@@ -108,6 +108,8 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
   read_sources(options, fluid);
   choose_units(gravity);
   past_.assign(2 * n, 0.0);
+  last_capturing_.assign(mesh.cells, 0.0);
+  last_normal_.assign(static_cast<size_t>(mesh.dimension) * mesh.cells, 0.0);
   rate_.assign(n * m, 0.0);
   state_.resize(n * m);
   step_.alpha.assign(n, 1.0);

@@ -78,6 +78,7 @@ class Compressible final : public Fluid {
   /// linear iterations.
   int solve_turbulence(double time, double dt);
   void take_eddy_viscosity();
+  void relax_capturing();
   GasNewton::Result solve_flow(double time, double dt, const std::vector<double>& before);
   void from_state();
   void find_pressure_gradient();
@@ -101,7 +102,9 @@ class Compressible final : public Fluid {
   std::vector<double> state_;                      ///< [nodes][size] p, u, T in those units
   std::vector<double> conserved_, old_conserved_;  ///< alpha U of steps n and n-1
   std::vector<double> rate_;                       ///< [nodes][size] rate of change of the last step
-  std::vector<double> past_;                       ///< [nodes][2] steps taken (up to 3), s of the last one
+  std::vector<double> last_capturing_;  ///< [cells] capturing viscosity of the last step, in the units of GasLaw
+  std::vector<double> last_normal_;     ///< [cells][dimension] GasFrozen::normal of the last step
+  std::vector<double> past_;            ///< [nodes][2] steps taken (up to 3), s of the last one
   std::vector<double> velocity_, pressure_, temperature_, density_field_, viscosity_field_, sound_, mach_;
   std::vector<double> velocity_change_, temperature_change_, pressure_gradient_;
   int last_newton_ = 0;

@@ -114,6 +114,8 @@ std::vector<Fluid::StateArray> Compressible::state() {
                                     {"gas_conserved_old", &old_conserved_, m},
                                     {"gas_rate", &rate_, m},
                                     {"gas_steps", &past_, 2},
+                                    {"gas_capturing", &last_capturing_, 1, true},
+                                    {"gas_capturing_normal", &last_normal_, m - 2, true},
                                     {"velocity_change", &velocity_change_, 3},
                                     {"temperature_change", &temperature_change_, 1}};
   if (turbulence_) turbulence_->add_state(result);

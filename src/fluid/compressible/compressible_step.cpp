@@ -30,6 +30,16 @@ void Compressible::take_eddy_viscosity() {
   for (double& lambda : step_.eddy_conductivity) lambda *= u0_ / p0_ / options_.gas_constant;
 }
 
+/// Towards a steady state the capturing viscosity is the mean of what the state asks for and what the last step had.
+/// The viscosity a shock asks for answers every change of the shock with one beyond it: at large steps the two would go
+/// back and forth for ever.
+void Compressible::relax_capturing() {
+  if (mpi_max(past_.empty() ? 0.0 : past_[0]) == 0) return;
+  GasFrozen& now = step_.frozen;
+  for (size_t c = 0; c < now.viscosity.size(); ++c) now.viscosity[c] = 0.5 * (now.viscosity[c] + last_capturing_[c]);
+  for (size_t c = 0; c < now.normal.size(); ++c) now.normal[c] = 0.5 * (now.normal[c] + last_normal_[c]);
+}
+
 /// The flow of a step. One that Newton's method cannot find (impulsive starts, sudden changes outside) is found by a
 /// scheme of first order; in time it is then found once more from there, with the viscosity that its own residual asks
 /// for.
@@ -41,6 +51,7 @@ GasNewton::Result Compressible::solve_flow(double time, double dt, const std::ve
   prepare(time, dt, order_);
   if (steady) std::fill(rate_.begin(), rate_.end(), 0.0);
   system_.freeze(step_, state_, rate_);
+  if (steady) relax_capturing();
   system_.to_vector(state_, unknown_);
   try {
     return newton_.solve(step_, unknown_, norm_scale(), accepted);
@@ -103,6 +114,8 @@ FluidStep Compressible::advance(double time, double dt) {
     throw;
   }
   last_newton_ = result.newton;
+  last_capturing_ = step_.frozen.viscosity;
+  last_normal_ = step_.frozen.normal;
   old_conserved_ = std::move(conserved_);
   conserved_ = system_.conserved(step_, state_);
   for (size_t k = 0; k < n * m; ++k) rate_[k] = step_.rate * conserved_[k] + step_.known[k];

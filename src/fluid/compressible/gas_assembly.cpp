@@ -36,6 +36,7 @@ void GasSystem::freeze_cells(GasStep& step, const std::vector<double>& state,
   step.frozen.carried.resize(static_cast<size_t>(each) * mesh_.cells);
   step.frozen.viscosity.resize(mesh_.cells);
   step.frozen.first_order.resize(mesh_.cells);
+  step.frozen.normal.resize(static_cast<size_t>(dim) * mesh_.cells);
   GasCell<C> cell;
   for (int c = 0; c < mesh_.cells; ++c) {
     gather(step, state, c, cell);
@@ -43,9 +44,9 @@ void GasSystem::freeze_cells(GasStep& step, const std::vector<double>& state,
     for (int a = 0; a < GasCell<C>::nodes; ++a)
       std::copy_n(&rate_now[static_cast<size_t>(mesh_.cell_nodes[static_cast<size_t>(c) * GasCell<C>::nodes + a]) * m],
                   m, cell.known[a]);
-    step.frozen.viscosity[c] =
-        freeze_cell<C>(cell, step.law, table, step.capturing, step.rate,
-                       &step.frozen.carried[static_cast<size_t>(each) * c], step.frozen.first_order[c]);
+    step.frozen.viscosity[c] = freeze_cell<C>(
+        cell, step.law, table, step.capturing, step.rate, &step.frozen.carried[static_cast<size_t>(each) * c],
+        &step.frozen.normal[static_cast<size_t>(dim) * c], step.frozen.first_order[c]);
   }
 }
 
@@ -78,6 +79,7 @@ PetscErrorCode GasSystem::cells(const GasStep& step, const std::vector<double>& 
                step.alpha_rate.data(),
                step.frozen.carried.data(),
                step.frozen.viscosity.data(),
+               step.frozen.normal.data(),
                step.eddy_viscosity.empty() ? nullptr : step.eddy_viscosity.data(),
                step.eddy_conductivity.data(),
                step.rate,

@@ -13,6 +13,7 @@ namespace silt {
 struct GasFrozen {
   std::vector<double> carried;  ///< [cells][dim][size][size]
   std::vector<double> viscosity;
+  std::vector<double> normal;       ///< [cells][dim] n; along n the viscosity is less by |n|^2: viscosity I - n n
   std::vector<double> first_order;  ///< its bound
   bool lumped = false;              ///< mass at the nodes
 
@@ -21,6 +22,7 @@ struct GasFrozen {
   void make_first_order(double factor) {
     std::fill(carried.begin(), carried.end(), 0.0);
     for (size_t c = 0; c < viscosity.size(); ++c) viscosity[c] = factor * first_order[c];
+    std::fill(normal.begin(), normal.end(), 0.0);
     lumped = true;
   }
 };
@@ -33,12 +35,12 @@ struct CapturingFactors {
 };
 
 /// Finds what is held fixed during a step from the state at its start (compressible.md, C13 to C16): `carried`
-/// [dim][size][size] = A_i tau, and returns the capturing viscosity, m times the unit of speed, and its
-/// bound, that of a first-order upwind scheme. cell.rate and cell.known
+/// [dim][size][size] = A_i tau, and returns the capturing viscosity, m times the unit of speed, what it lacks along the
+/// normal of a shock (GasFrozen::normal), and its bound, that of a first-order upwind scheme. cell.rate and cell.known
 /// give the rate of change in the residual; `step_rate` is the factor of U^{n+1} in the coming step.
 template <Cell C>
 double freeze_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& table, const CapturingFactors& factors,
-                   double step_rate, double* carried, double& first_order) {
+                   double step_rate, double* carried, double* normal, double& first_order) {
   constexpr int dim = GasCell<C>::dim, nodes = GasCell<C>::nodes, size = dim + 2;
   using Matrix = Eigen::Matrix<double, size, size, Eigen::RowMajor>;
   const GasNodes<C> at(cell, gas);
@@ -154,8 +156,13 @@ double freeze_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& t
   const auto ramp = [](double x) { return x <= 0 ? 0.0 : x >= 1 ? 1.0 : x * x * (3 - 2 * x); };
   const double share =
       divergence > 0 ? factors.sensor * ramp((ratio - 0.4) / 0.4) : factors.shocks * ramp((ratio - 0.1) / 0.3);
-  viscosity = std::max(viscosity, first_order * share);
-  return std::min(viscosity, first_order);
+  const double along = std::min(viscosity, first_order);
+  viscosity = std::min(std::max(viscosity, first_order * share), first_order);
+  // Of a shock's only the part within its plane is wanted: it is what keeps shocks along mesh lines from buckling, and
+  // along the normal it would make them thick.
+  const bool shock = divergence <= 0 && steep * h > 1e-10 * rho;
+  for (int i = 0; i < dim; ++i) normal[i] = shock ? std::sqrt(viscosity - along) * j[i] / steep : 0.0;
+  return viscosity;
 }
 
 }  // namespace silt

@@ -104,7 +104,7 @@ void strong_residual(const GasCell<C, V>& cell, const GasNodes<C, V>& at, const 
 /// Residual [rows] and, when not null, Jacobian [rows][rows] of a cell.
 template <Cell C, class V>
 void gas_cell(const GasCell<C, V>& cell, const GasLaw& gas, const FlowTable& table, const V* carried, V capturing,
-              V* residual, V* matrix) {
+              const V* normal, V* residual, V* matrix) {
   constexpr int dim = GasCell<C>::dim, nodes = GasCell<C>::nodes, size = dim + 2, rows = nodes * size;
   const bool viscous = gas.viscosity > 0 || cell.turbulent;
   const GasNodes<C, V> at(cell, gas);
@@ -141,6 +141,12 @@ void gas_cell(const GasCell<C, V>& cell, const GasLaw& gas, const FlowTable& tab
       }
       for (int k = 0; k < size; ++k) rate[k] += M[a] * at.rate[a][k];
     }
+    // What captures discontinuities: nu grad U - n (n.grad U).
+    for (int k = 0; k < size; ++k) {
+      V across{};
+      for (int i = 0; i < dim; ++i) across += normal[i] * gU[i][k];
+      for (int i = 0; i < dim; ++i) gU[i][k] = capturing * gU[i][k] - normal[i] * across;
+    }
     // Viscous stress and heat flux; the stress tau is counted over mu.
     V mu{}, conductivity{}, stiff{}, hoop{}, tau_hoop{}, tau[dim][dim] = {}, flux[dim][size] = {};
     if (viscous) {
@@ -169,7 +175,7 @@ void gas_cell(const GasCell<C, V>& cell, const GasLaw& gas, const FlowTable& tab
       V* r = residual + a * size;
       for (int k = 0; k < size; ++k) {
         V sum = M[a] * (cell.lumped ? at.rate[a][k] : rate[k]);
-        for (int i = 0; i < dim; ++i) sum += point.g[a][i] * (flux[i][k] - F[i][k] + capturing * gU[i][k]);
+        for (int i = 0; i < dim; ++i) sum += point.g[a][i] * (flux[i][k] - F[i][k] + gU[i][k]);
         for (int i = 0; i < dim; ++i)
           for (int l = 0; l < size; ++l) sum += point.g[a][i] * P(i, k, l) * R[l];
         r[k] += w * sum;
@@ -187,7 +193,9 @@ void gas_cell(const GasCell<C, V>& cell, const GasLaw& gas, const FlowTable& tab
           mass[a][b] += w * M[a] * M[b];
         else if (a == b)
           mass[a][a] += w * M[a];
-        spread[a][b] += w * capturing * gradients;
+        V one{}, other{};
+        for (int i = 0; i < dim; ++i) one += normal[i] * point.g[a][i], other += normal[i] * point.g[b][i];
+        spread[a][b] += w * (capturing * gradients - one * other);
         for (int i = 0; i < dim; ++i) {
           ofF[a][b][i] -= w * point.g[a][i] * M[b];
           testU[a][b][i] += w * point.g[a][i] * M[b];

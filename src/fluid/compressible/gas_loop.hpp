@@ -12,7 +12,7 @@ struct GasData {
   const double* coordinates;                         ///< [cells][nodes][3]
   const double *state, *known, *source;              ///< [nodes][size]
   const double *alpha, *alpha_rate;                  ///< [nodes]
-  const double *carried, *viscosity;                 ///< GasFrozen
+  const double *carried, *viscosity, *normal;        ///< GasFrozen
   const double *eddy_viscosity, *eddy_conductivity;  ///< [cells]; null: laminar
   double rate, gravity[3];
   bool axisymmetric, porous, lumped;

@@ -12,11 +12,12 @@ void evaluate_gas(const GasData& data, int first, int count, double* residual, d
   constexpr int dim = cell_dimension(C), nodes = cell_nodes(C), size = dim + 2, rows = nodes * size;
   constexpr int each = dim * size * size;
   GasCell<C, V> cell;
-  V carried[each], viscosity;
+  V carried[each], viscosity, normal[dim];
   for (int l = 0; l < W; ++l) {
     const long c = first + (l < count ? l : count - 1);
     for (int k = 0; k < each; ++k) carried[k][l] = data.carried[each * c + k];
     viscosity[l] = data.viscosity[c];
+    for (int d = 0; d < dim; ++d) normal[d][l] = data.normal[dim * c + d];
     if (data.eddy_viscosity) {
       cell.eddy_viscosity[l] = data.eddy_viscosity[c];
       cell.eddy_conductivity[l] = data.eddy_conductivity[c];
@@ -43,7 +44,7 @@ void evaluate_gas(const GasData& data, int first, int count, double* residual, d
   cell.turbulent = data.eddy_viscosity != nullptr;
   cell.lumped = data.lumped;
   V R[rows], K[rows * rows];
-  gas_cell<C, V>(cell, data.law, *data.table, carried, viscosity, R, matrix ? K : nullptr);
+  gas_cell<C, V>(cell, data.law, *data.table, carried, viscosity, normal, R, matrix ? K : nullptr);
   for (int r = 0; r < rows; ++r)
     for (int l = 0; l < W; ++l) residual[static_cast<long>(l) * rows + r] = R[r][l];
   if (matrix)
