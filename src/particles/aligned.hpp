@@ -10,7 +10,7 @@
 
 namespace silt {
 
-/// An array of plain records aligned for vector loads (64 bytes; whole 2 MB pages once it is large). Growing keeps the
+/// An array of plain records aligned for vector loads (64 bytes; in 2 MB pages once it is large). Growing keeps the
 /// contents, by an eighth at least; new entries are zero.
 template <class T>
 class Aligned {
@@ -40,11 +40,12 @@ class Aligned {
     constexpr std::size_t page = std::size_t(2) << 20;
     const std::size_t grown = capacity_ + capacity_ / 8 + 64;
     std::size_t bytes = (count > grown ? count : grown) * sizeof(T);
+    bytes = (bytes + 63) / 64 * 64;
     const std::size_t alignment = bytes > 2 * page ? page : 64;
-    bytes = (bytes + alignment - 1) / alignment * alignment;
-    void* memory = std::aligned_alloc(alignment, bytes);
-    if (!memory) throw std::bad_alloc();
-    if (alignment == page) madvise(memory, bytes, MADV_HUGEPAGE);
+    void* memory = nullptr;
+    // The last page need not be whole.
+    if (posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
+    if (alignment == page) madvise(memory, bytes / page * page, MADV_HUGEPAGE);
     const std::size_t kept = capacity_ * sizeof(T);
     if (kept) std::memcpy(memory, data_, kept);
     std::memset(static_cast<char*>(memory) + kept, 0, bytes - kept);

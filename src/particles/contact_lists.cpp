@@ -152,7 +152,7 @@ void ContactLists::look(CandidateSweep& sweep, double moved, double skin, void (
   for (int turned = 0; open_page_ < reached && turned < pages; ++turned) {
     auto& page = page_[++open_page_ % pages];
     for (const Pair& pair : page) add_due(pair.i, pair.j);
-    page = {};
+    std::vector<Pair>().swap(page);
   }
   open_page_ = std::max(open_page_, reached);
   const auto needed = static_cast<std::size_t>(due_count_) + 2 * pad_to;

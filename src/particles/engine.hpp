@@ -15,6 +15,7 @@
 #include "particles/materials.hpp"
 #include "particles/migration.hpp"
 #include "particles/neighbours.hpp"
+#include "particles/packed_state.hpp"
 #include "particles/particle_options.hpp"
 #include "particles/particles.hpp"
 #include "particles/store.hpp"
@@ -40,14 +41,14 @@ class OwnCommunicator {
 /// A copy of the state of a rank's particles.
 struct Particles::Snapshot {
   int owned = 0;
-  std::vector<Motion> motion;
-  std::vector<Load> present;  ///< empty: not kept
-  std::vector<std::int64_t> id;
+  PackedMotions motion;
+  PackedLoads present;  ///< empty: not kept
+  PackedIds id;
   std::vector<int> cell;
   std::vector<FluidAction> action;
   std::vector<double> columns;
-  ContactMemory contacts;
-  ParticleRows walls;
+  PackedRows contacts, walls;
+  bool contacts_once;  ///< ContactMemory::once
   Impulses impulses;
   long long total, removed;
   std::int64_t next_id;

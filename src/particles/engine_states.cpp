@@ -84,23 +84,25 @@ void Engine::detach() {
 }
 
 std::shared_ptr<const Particles::Snapshot> Engine::snapshot(bool to_repeat) const {
-  ContactMemory memory = memory_;
-  ParticleRows wall_memory = wall_memory_;
+  ContactMemory memory(laws_.history_components());
+  ParticleRows wall_memory(wall_memory_.width);
   if (!detached_) {
     contacts.gather_once(store, {}, memory);
     wall_contacts.gather(store.owned, wall_memory);
   }
+  const ContactMemory& remembered = detached_ ? memory_ : memory;
   const int n = store.owned;
   return std::make_shared<const Particles::Snapshot>(
       Particles::Snapshot{n,
-                          std::vector<Motion>(store.motion.data(), store.motion.data() + n),
-                          std::vector<Load>(store.present.data(), store.present.data() + (to_repeat ? n : 0)),
-                          std::vector<std::int64_t>(store.id.begin(), store.id.begin() + n),
+                          PackedMotions(store.motion.data(), n),
+                          PackedLoads(store.present.data(), to_repeat ? n : 0),
+                          PackedIds(n, [this](std::size_t p) { return store.id[p]; }),
                           store.cell,
                           store.action,
                           store.columns.save(n),
-                          std::move(memory),
-                          std::move(wall_memory),
+                          PackedRows(remembered.rows, true),
+                          PackedRows(detached_ ? wall_memory_ : wall_memory, false),
+                          remembered.once,
                           impulses,
                           total,
                           removed,
@@ -119,18 +121,20 @@ void Engine::restore(const Particles::Snapshot& saved) {
   store.owned = saved.owned;
   store.ghosts = 0;
   store.reserve(saved.owned);
-  std::copy(saved.motion.begin(), saved.motion.end(), store.motion.data());
-  std::copy(saved.present.begin(), saved.present.end(), store.present.data());
+  saved.motion.unpack(store.motion.data());
+  saved.present.unpack(store.present.data());
   if (saved.present.empty()) std::fill_n(store.present.data(), saved.owned, Load{});  // start() evaluates them anew
-  store.id = saved.id;
+  store.id.resize(saved.owned);
+  for (int p = 0; p < saved.owned; ++p) store.id[p] = saved.id[p];
   store.cell = saved.cell;
   store.acted_on = store.acted_on || !saved.action.empty();
   store.action = saved.action;
   if (store.acted_on) store.action.resize(saved.owned);
   store.columns.restore(saved.columns, saved.owned);
   contacts.clear();
-  memory_ = saved.contacts;
-  wall_memory_ = saved.walls;
+  memory_.rows = saved.contacts.unpack();
+  memory_.once = saved.contacts_once;
+  wall_memory_ = saved.walls.unpack();
   detached_ = true;
   impulses = saved.impulses;
   total = saved.total;
@@ -150,12 +154,9 @@ void Engine::restore(const Particles::Snapshot& saved) {
 }
 
 std::size_t Particles::Snapshot::bytes() const {
-  const auto rows = [](const ParticleRows& of) {
-    return of.start.capacity() * sizeof(int) + of.entries.capacity() * sizeof(double);
-  };
-  return motion.capacity() * sizeof(Motion) + present.capacity() * sizeof(Load) + id.capacity() * sizeof(id[0]) +
-         cell.capacity() * sizeof(int) + action.capacity() * sizeof(FluidAction) + columns.capacity() * sizeof(double) +
-         rows(contacts.rows) + rows(walls);
+  return motion.bytes() + present.bytes() + id.bytes() + cell.capacity() * sizeof(int) +
+         action.capacity() * sizeof(FluidAction) + columns.capacity() * sizeof(double) + contacts.bytes() +
+         walls.bytes();
 }
 
 std::vector<std::pair<std::string, std::size_t>> Engine::bytes() const {

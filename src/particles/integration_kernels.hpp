@@ -1,5 +1,7 @@
 // The pass over all particles that moves them; part of sweep_kernels.hpp, compiled once per instruction set.
 #pragma once
+#include <cstdint>
+
 #include "particles/orientation.hpp"
 #include "particles/pack.hpp"
 #include "particles/sweep.hpp"
@@ -14,23 +16,46 @@ SILT_INLINE double scalar_product(const Quad& a, const Quad& b) {
   return c[0] + c[1] + c[2];
 }
 
-/// The drift of a particle that nothing but gravity acts on, with the bits of the general one; its spin stays.
-SILT_INLINE void move_freely(Integration& step, int p, double& largest, double& check) {
-  Motion& motion = step.motion[p];
-  const double h = step.dt;
-  const Quad move = quad(step.move), acceleration = quad(step.gravity) * move;
-  const Quad velocity = quad(motion.velocity), before = quad(motion.position);
-  const Quad position = before + (every(h) * move) * velocity + every(step.second) * acceleration;
-  *reinterpret_cast<Quad*>(motion.position) = position;
-  *reinterpret_cast<Quad*>(motion.velocity) = velocity + every(h) * acceleration;
-  if (step.orientation) {
-    const Quad spin = quad(motion.spin);
-    turn_by(step.orientation[p], h * spin[0], h * spin[1], h * spin[2]);
+/// Bit k is set where particle first + k may bear a load, now or in the step before.
+SILT_INLINE std::uint64_t loaded_in_block(const Integration& step, int first, int count) {
+#if SILT_LANES == 8
+  if (count == 64) {
+    const __m512i both =
+        _mm512_or_si512(_mm512_loadu_si512(step.loaded + first), _mm512_loadu_si512(step.loaded_before + first));
+    return _mm512_test_epi8_mask(both, both);
   }
-  const Quad moved = position - before;
-  const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
-  largest = largest > square ? largest : square;
-  check += square;
+#endif
+  std::uint64_t bits = 0;
+  for (int k = 0; k < count; ++k) bits |= std::uint64_t(step.loaded[first + k] | step.loaded_before[first + k]) << k;
+  return bits;
+}
+
+/// The drift of those particles of a block that nothing but gravity acts on, with the bits of the general one; their
+/// spins stay. The others take part with a step of no time: a branch would be foreseen wrongly for every other one of
+/// them, which costs more than the whole block.
+SILT_INLINE void move_freely(Integration& step, int first, int count, std::uint64_t loaded, double& largest,
+                             double& check) {
+  const double h = step.dt, second = step.second;
+  const Quad move = quad(step.move), acceleration = quad(step.gravity) * move;
+  const bool falls = acceleration[0] != 0 || acceleration[1] != 0 || acceleration[2] != 0;
+  for (int k = 0; k < count; ++k) {
+    Motion& motion = step.motion[first + k];
+    const double here = loaded >> k & 1 ? 0 : 1;
+    const Quad velocity = quad(motion.velocity), before = quad(motion.position);
+    const Quad position = before + (every(here * h) * move) * velocity + every(here * second) * acceleration;
+    *reinterpret_cast<Quad*>(motion.position) = position;
+    if (falls) *reinterpret_cast<Quad*>(motion.velocity) = velocity + every(here * h) * acceleration;
+    const Quad moved = position - before;
+    const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
+    largest = largest > square ? largest : square;
+    check += square;
+  }
+  if (!step.orientation) return;
+  for (int k = 0; k < count; ++k)
+    if (!(loaded >> k & 1)) {
+      const Quad spin = quad(step.motion[first + k].spin);
+      turn_by(step.orientation[first + k], h * spin[0], h * spin[1], h * spin[2]);
+    }
 }
 
 template <bool correct, bool drift, bool fluid, bool turning, bool sparse>
@@ -38,20 +63,8 @@ void integrate_all(Integration& step) {
   const double h = step.dt;
   const Quad move = quad(step.move), turn = quad(step.turn), gravity = quad(step.gravity);
   double largest = 0, check = 0;
-  for (int p = 0; p < step.count; ++p) {
+  const auto integrate_one = [&](int p) {
     Motion& motion = step.motion[p];
-    if constexpr (sparse) {
-      // The loads of the few that have some lie far apart, where the processor does not foresee them.
-      constexpr int ahead = 24;
-      if (const int next = p + ahead; next < step.count && (step.loaded[next] | step.loaded_before[next])) {
-        __builtin_prefetch(&step.present[next], 1);
-        __builtin_prefetch(&step.previous[next], 1);
-      }
-      if (!(step.loaded[p] | step.loaded_before[p])) {
-        if constexpr (drift) move_freely(step, p, largest, check);
-        continue;
-      }
-    }
     Quad velocity = quad(motion.velocity), spin = quad(motion.spin);
     const double inverse_mass = motion.inverse_mass;
     const double inverse_inertia = 2.5 * inverse_mass / (motion.radius * motion.radius);
@@ -127,6 +140,25 @@ void integrate_all(Integration& step) {
     *reinterpret_cast<Quad*>(motion.velocity) = velocity;
     *reinterpret_cast<Quad*>(motion.spin) = spin;
     if constexpr (fluid) *reinterpret_cast<Quad*>(step.drag[p].impulse) = impulse;
+  };
+  if constexpr (sparse) {
+    constexpr int block = 64;
+    const auto size = [&](int first) { return step.count - first < block ? step.count - first : block; };
+    std::uint64_t loaded = step.count > 0 ? loaded_in_block(step, 0, size(0)) : 0;
+    for (int first = 0; first < step.count; first += block) {
+      // The loads of the few that have some lie far apart, where the processor does not foresee them.
+      const int next = first + block;
+      const std::uint64_t coming = next < step.count ? loaded_in_block(step, next, size(next)) : 0;
+      for (std::uint64_t left = coming; left; left &= left - 1) {
+        __builtin_prefetch(&step.present[next + __builtin_ctzll(left)], 1);
+        __builtin_prefetch(&step.previous[next + __builtin_ctzll(left)], 1);
+      }
+      if constexpr (drift) move_freely(step, first, size(first), loaded, largest, check);
+      for (std::uint64_t left = loaded; left; left &= left - 1) integrate_one(first + __builtin_ctzll(left));
+      loaded = coming;
+    }
+  } else {
+    for (int p = 0; p < step.count; ++p) integrate_one(p);
   }
   step.largest_square = largest;
   step.check = check;

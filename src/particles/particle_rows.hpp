@@ -19,10 +19,10 @@ struct ParticleRows {
     start.assign(1, 0);
     entries.clear();
   }
-  /// Forgets all, and where it stood.
+  /// Forgets all, and gives its room back (an empty list assigned would keep it).
   void release() {
-    start = {0};
-    entries = {};
+    std::vector<int>(1, 0).swap(start);
+    std::vector<double>().swap(entries);
   }
   /// Gives the next particle `count` rows, copied from `from`.
   void append(const double* from, int count) {

@@ -114,7 +114,7 @@ class Particles {
   /// The whole state, to return to after a fluid step that failed. restore() must be followed by an advance(). Local /
   /// collective.
   struct Snapshot;
-  /// `to_repeat`: a step from it has the same bits again (a copy of the present forces, 64 B a particle); else the
+  /// `to_repeat`: a step from it has the same bits again (a copy of the present forces, 48 B a particle); else the
   /// forces are evaluated anew.
   std::shared_ptr<const Snapshot> snapshot(bool to_repeat = true) const;
   void restore(const Snapshot& snapshot);
