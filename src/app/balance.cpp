@@ -15,6 +15,10 @@ void BalanceOptions::options(OptionGroup& option) {
          non_negative);
   option("threshold", threshold, "-", "work of the busiest rank over the mean, above which it is shared out anew",
          at_least(1));
+  option("start", start, "-",
+         "the same once before the first step, for runs of at least 1000 particles a rank, at costs estimated from the "
+         "numbers of substeps and unknowns (the same input gives the same bits); 0: never",
+         non_negative);
 }
 
 Costs Balance::measure(const Mesh& mesh, const Particles* particles, double particle_seconds, double cell_seconds) {
@@ -25,6 +29,20 @@ Costs Balance::measure(const Mesh& mesh, const Particles* particles, double part
   costs.cell = std::max({costs.cell, 0.01 * costs.particle, 1e-12});
   costs.particle = std::max(costs.particle, 1e-6 * costs.cell);
   return costs;
+}
+
+Costs Balance::estimate(double substeps, double unknowns, bool at_once) {
+  // In substeps of a particle, as bench/coupled and bench/fluid --duct measure them.
+  constexpr double in_turn = 15, together = 250;
+  Costs costs{std::max(substeps, 1.0), unknowns * (at_once ? together : in_turn)};
+  costs.cell = std::max(costs.cell, 0.01 * costs.particle);
+  return costs;
+}
+
+bool Balance::worthwhile_at_start(double imbalance, const Particles* particles) const {
+  constexpr long long least = 1000;  // particles a rank; fewer are sooner done than shared out
+  return options_.start > 0 && mpi_size() > 1 && particles && particles->total() >= least * mpi_size() &&
+         imbalance > options_.start;
 }
 
 double Balance::imbalance(const Mesh& mesh, const Particles* particles, const Costs& costs) {

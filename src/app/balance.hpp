@@ -10,7 +10,7 @@ namespace silt {
 
 /// The options `-balance_...`.
 struct BalanceOptions {
-  double interval = 0, threshold = 1.2;
+  double interval = 0, threshold = 1.2, start = 1.05;
   void options(OptionGroup& option);
 };
 
@@ -27,6 +27,9 @@ class Balance {
 
   /// Measures the costs of a stretch of steps: seconds spent with particles and with cells. Collective.
   static Costs measure(const Mesh& mesh, const Particles* particles, double particle_seconds, double cell_seconds);
+  /// What they will cost, from counts alone, so that the same input gives the same partition: `substeps` of the
+  /// particles in a step, solved `unknowns` of the flow a cell (0: none), solved all at once or by pressure correction.
+  static Costs estimate(double substeps, double unknowns, bool at_once);
   /// Work of the busiest rank over the mean. Collective.
   static double imbalance(const Mesh& mesh, const Particles* particles, const Costs& costs);
 
@@ -37,6 +40,8 @@ class Balance {
     return imbalance > options_.threshold && (reached == 0 || imbalance > 1.1 * reached);
   }
   void start(double time) { due(time); }
+  /// Whether it is worth it before the first step. Collective.
+  bool worthwhile_at_start(double imbalance, const Particles* particles) const;
 
  private:
   BalanceOptions options_;

@@ -163,7 +163,9 @@ int Simulation::check() {
 }
 
 int Simulation::run() {
+  const bool fresh = !restart_;
   start();
+  if (fresh && uneven_at_start()) return share_out_anew;
   while (now_.time < time_options_.end * (1 - 1e-12)) {
     choose_step();
     try {
@@ -172,7 +174,7 @@ int Simulation::run() {
     } catch (const RunError& error) {
       throw RunError(error.what() + save_last_good());
     }
-    if (checkpoint_->due(now_.time)) write_checkpoint("checkpoint.h5");
+    if (checkpoint_->due(now_.time)) write_checkpoint("checkpoint.h5", costs());
     if (balance_->due(now_.time) && uneven()) return share_out_anew;
   }
   finish();
@@ -282,7 +284,7 @@ std::string Simulation::save_last_good() {
     shortened_ = good_.clock.shortened;
     *profiles_ = *good_.profiles;
     if (now_.time > output_->last()) output_->write(now_);
-    write_checkpoint("last_good.h5");
+    write_checkpoint("last_good.h5", costs());
   } catch (const RunError& error) {
     return fmt::format("; the last good state could not be written: {}", error.what());
   }
@@ -294,28 +296,9 @@ RunParts Simulation::run_parts() const {
   return {*mesh_, fluid_.get(), particles_.get(), coupling_.get(), profiles_.get(), expectations_.get()};
 }
 
-void Simulation::write_checkpoint(const std::string& file) {
+void Simulation::write_checkpoint(const std::string& file, const Costs& costs) {
   const Stopwatch watch(*this, writing);
-  Checkpoint::write(output_->directory().path(file), run_parts(), {now_.time, now_.dt, shortened_, now_.step}, costs());
-}
-
-Costs Simulation::costs() const {
-  const auto here = [this](Task task) { return seconds_[task] - seconds_before_[task]; };
-  return Balance::measure(*mesh_, particles_.get(), here(moving_particles), here(solving_fluid) + here(exchanging));
-}
-
-/// Whether the work should be shared out anew; if so the state is written for the run that goes on from it.
-bool Simulation::uneven() {
-  const double imbalance = Balance::imbalance(*mesh_, particles_.get(), costs());
-  if (!balance_->worthwhile(imbalance, reached_)) return false;
-  write_checkpoint("balance.h5");
-  carried_ = std::make_unique<Carried>();
-  carried_->file = output_->directory().path("balance.h5");
-  carried_->reached = imbalance;
-  carried_->expectations = std::move(expectations_);
-  carried_->profiles = std::move(profiles_);
-  std::copy(seconds_.begin(), seconds_.end(), carried_->seconds.begin());
-  return true;
+  Checkpoint::write(output_->directory().path(file), run_parts(), {now_.time, now_.dt, shortened_, now_.step}, costs);
 }
 
 /// Particles first, with the flow of the step's start; then the flow, with what they did to it; then the account is
@@ -377,7 +360,7 @@ void Simulation::report() {
 }
 
 void Simulation::finish() {
-  if (checkpoint_->wanted()) write_checkpoint("checkpoint.h5");
+  if (checkpoint_->wanted()) write_checkpoint("checkpoint.h5", costs());
   progress_->finish(now_);
   if (particles_ && particles_->total() >= 1000)  // fewer have less than what arrays take at least
     progress_->line(fmt::format("memory     particles {}", particles_->memory(good_.particles.get())));

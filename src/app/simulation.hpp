@@ -77,10 +77,12 @@ class Simulation {
   void step();
   void attempt();
   void report();
-  void write_checkpoint(const std::string& file);
+  void write_checkpoint(const std::string& file, const Costs& costs);
   RunParts run_parts() const;
   void keep_state();
   bool uneven();
+  bool uneven_at_start();
+  void hand_on(double imbalance, const Costs& costs);
   Costs costs() const;
   /// Goes back to the last good state, writes it and returns words about it for the error that ends the run.
   std::string save_last_good();
