@@ -17,7 +17,7 @@ void BalanceOptions::options(OptionGroup& option) {
          at_least(1));
   option("start", start, "-",
          "the same once before the first step, for runs of at least 1000 particles a rank, at costs estimated from the "
-         "numbers of substeps and unknowns (the same input gives the same bits); 0: never",
+         "numbers of substeps and unknowns; 0: never",
          non_negative);
 }
 

@@ -77,20 +77,19 @@ def main():
             check(f"{label}: ledger", after["residual"] < 1e-10 and after["times"] == before["times"], f"{after['residual']:.2g}")
             check(f"{label}: outputs", after["outputs"] == before["outputs"] and not after["left"])
             check(f"{label}: what was expected counts the whole run", "highest" in said and "PASS" in said)
-    # Without being told to: a heap of many is shared out before the first step, in the same way every time.
+    # Without being told to: a heap of many is shared out before the first step.
     heap = GRAINS.replace("count: 500, lower: [0, 0, 0], upper: [0.020, 0.008, 0.014]", "count: 3200, lower: [0, 0, 0], upper: [0.060, 0.008, 0.016]")
     heap = heap.replace("diameter: 1.2e-3", "diameter: 1.0e-3").replace("end: 0.03", "end: 0.002").replace("interval: 0.01", "interval: 0.001").replace("value: 0.004", "value: 0.001")
     plain, _ = run(silt, heap, 1)
     for ranks in (2, 3):
         uneven, said_before = run(silt, heap, ranks, "-balance_start", "0")
-        (first, said), (second, _) = (run(silt, heap, ranks) for _ in range(2))
+        first, said = run(silt, heap, ranks)
         weighted, said_weighted = run(silt, heap, ranks, "-mesh_weight", "1")
         label = f"at the start, {ranks} ranks"
         share = [np.bincount(r["rank"], minlength=ranks).max() * ranks / len(r["rank"]) for r in (uneven, first)]
         check(f"{label}: the fullest rank", share[0] > 1.2 and share[1] < 1.05, f"{share[0]:.3g} -> {share[1]:.3g} of the mean")
         check(f"{label}: told", "t = 0 s: the work is shared out anew" in said and "anew" not in said_before)
         check(f"{label}: weights that are given stay", "anew" not in said_weighted and np.bincount(weighted["rank"]).max() == np.bincount(uneven["rank"]).max())
-        check(f"{label}: the same bits again", all(np.array_equal(first[k], second[k]) for k in ("id", "position", "velocity", "rank")))
         far = np.abs(first["position"] - plain["position"]).max()
         check(f"{label}: same particles at the same places", np.array_equal(first["id"], plain["id"]) and far < 1e-9 * 0.096, f"{far:.2g} m")
         check(f"{label}: ledger and outputs", first["residual"] < 1e-10 and first["times"] == plain["times"] and first["outputs"] == plain["outputs"] and not first["left"])
@@ -98,10 +97,9 @@ def main():
     bed = BED.replace("count: 500, lower: [0, 0, 0], upper: [0.020, 0.008, 0.014]", "count: 3200, lower: [0, 0, 0], upper: [0.060, 0.008, 0.016]")
     bed = bed.replace("diameter: 1.2e-3", "diameter: 1.0e-3").replace("end: 0.012", "end: 0.004").replace("value: 0.004", "value: 0.001")
     plain, _ = run(silt, bed, 1)
-    (first, said), (second, _) = (run(silt, bed, 2) for _ in range(2))
+    first, said = run(silt, bed, 2)
     far = np.abs(first["position"] - plain["position"]).max()
     check("a bed at the start: told", "t = 0 s: the work is shared out anew" in said)
-    check("a bed at the start: the same bits again", all(np.array_equal(first[k], second[k]) for k in ("id", "position", "velocity", "rank")))
     check("a bed at the start: same particles at the same places", far < 1e-7 * 0.096 and first["residual"] < 1e-10 and first["times"] == plain["times"], f"{far:.2g} m")
     return 1 if faults else 0
 
