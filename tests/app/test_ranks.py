@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # processors: 3
-"""The same case on 1, 2 and 3 ranks: the same particles, a clean ledger, the same bed; a dilute case to 1e-8."""
+"""The same case on 1, 2 and 3 ranks: the same particles, a clean ledger, the same bed; a dilute case to 1e-8. The same case on as
+many ranks: the same bits."""
 import csv
 import glob
 import os
@@ -67,6 +68,7 @@ class Run:
                 order = np.argsort(file["id"][...])
                 self.holders = len(np.unique(file["rank"][...]))
                 self.id = file["id"][...][order]
+                self.rank = file["rank"][...][order]
                 self.position, self.velocity = file["position"][...][order], file["velocity"][...][order]
 
 
@@ -104,6 +106,11 @@ def main():
                 check(f"{label}: positions", np.abs(run.position - one.position).max() / 0.048, 1e-8)
                 check(f"{label}: velocities", np.abs(run.velocity - one.velocity).max() / 0.3, 1e-8)
                 check(f"{label}: pressure drop", abs(run.last["pressure_drop"] - one.last["pressure_drop"]) / abs(one.last["pressure_drop"]), 1e-8)
+    short = BED.replace("end: 0.02", "end: 0.003").replace("settle: {time: 0.05}", "settle: {time: 0.01}") % "hexahedron"
+    first, *others = [Run(silt, short, "", 3) for _ in range(5)]
+    for k, run in enumerate(others):
+        same = all(np.array_equal(getattr(first, name), getattr(run, name)) for name in ("id", "rank", "position", "velocity"))
+        check(f"run {k + 2} on 3 ranks: other bits than the first", 0 if same else 1, 0)
     return 1 if faults else 0
 
 

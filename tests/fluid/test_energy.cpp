@@ -1,4 +1,5 @@
 // The energy equation of incompressible flow, both schemes.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "flow_case.hpp"
@@ -186,6 +187,24 @@ TEST_CASE("conduction between walls of a wall temperature and a heat-transfer co
   // q = (400 - 300)/(1/0.3 + 1/0.6) = 20
   CHECK(flow.value(flow.fluid->temperature(), 1, 0, Vec3(1, 0.5, 0)) == Approx(300 + 20 / 0.6).epsilon(1e-6));
   CHECK(flow.value(flow.fluid->temperature(), 1, 0, Vec3(0.5, 0.5, 0)) == Approx(400 - 20 * 0.5 / 0.3).epsilon(1e-6));
+}
+
+TEST_CASE("fluid that enters an outlet is as warm as it was there at the start", "[fluid][energy]") {
+  for (const char* scheme : {"pressure_correction", "monolithic"}) {
+    auto settings = box("quadrilateral", 6, scheme);
+    for (const char* wall : {"y_min", "y_max"})
+      settings.push_back({"boundary_" + std::string(wall) + "_type", "no_slip"});
+    for (const char* opening : {"x_min", "x_max"})
+      settings.push_back({"boundary_" + std::string(opening) + "_type", "pressure"});
+    settings.push_back({"boundary_x_max_pressure", "1"});  // drives the fluid in here
+    settings.push_back({"fluid_initial_temperature", "300 + 10*x"});
+    FlowCase flow(settings);
+    for (int k = 0; k < 80; ++k) flow.advance(0.5);
+    const auto T = flow.fluid->temperature();
+    CHECK(flow.value(flow.fluid->velocity(), 3, 0, Vec3(0.5, 0.5, 0)) < -0.5);
+    CHECK(*std::max_element(T.begin(), T.end()) == Approx(310).epsilon(1e-6));
+    CHECK(*std::min_element(T.begin(), T.end()) == Approx(310).epsilon(1e-6));
+  }
 }
 
 TEST_CASE("thermal conditions that make no sense are refused", "[fluid][energy]") {

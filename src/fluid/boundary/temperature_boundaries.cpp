@@ -60,8 +60,7 @@ TemperatureBoundaries::TemperatureBoundaries(const Mesh& mesh, Options& options,
   for (size_t b = 0; b < conditions_.size(); ++b) {
     const Condition& c = conditions_[b];
     given.push_back(c.kind == Condition::given);
-    entered.push_back(c.kind == Condition::inflow ||
-                      (boundaries_.type(static_cast<int>(b)) == BoundaryType::pressure && c.has_value));
+    entered.push_back(c.kind == Condition::inflow || boundaries_.type(static_cast<int>(b)) == BoundaryType::pressure);
   }
   fixed_boundary_ = strongest(given);
   entered_boundary_ = strongest(entered);

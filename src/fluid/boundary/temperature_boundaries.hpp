@@ -10,7 +10,8 @@ namespace silt {
 ///
 /// Walls are adiabatic unless told otherwise. Inflows need the temperature of what enters: it comes with the flow, so
 /// that the heat brought in is exact however steep the temperature is behind (Danckwerts 1953), or is held at the nodes
-/// (`given`; `velocity` in compressible flow always). On `pressure` boundaries it may be given for fluid that comes in.
+/// (`given`; `velocity` in compressible flow always). On `pressure` boundaries it may be given for fluid that comes in,
+/// which in incompressible flow else is as warm as the fluid there was at the start.
 class TemperatureBoundaries {
  public:
   struct Condition {
@@ -27,8 +28,7 @@ class TemperatureBoundaries {
   const std::vector<char>& fixed() const { return fixed_; }
   /// [nodes] the boundary that gives it, of those that meet the one whose flow condition is the strongest; -1: none.
   const std::vector<int>& fixed_boundary() const { return fixed_boundary_; }
-  /// [nodes] the boundary whose fluid that enters there has its temperature: `inflow`, or `pressure` with a value; -1:
-  /// none.
+  /// [nodes] the boundary, `inflow` or `pressure`, that fluid which enters there comes through; -1: none.
   const std::vector<int>& entered_boundary() const { return entered_boundary_; }
   /// K, given at the node at time t; only where fixed.
   double given(int node, double t) const;

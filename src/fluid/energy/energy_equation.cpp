@@ -58,7 +58,7 @@ EnergyEquation::EnergyEquation(const Mesh& mesh, Options& options, double densit
   temperature_.resize(mesh.nodes);
   for (int i = 0; i < mesh.nodes; ++i)
     temperature_[i] = initial(vec3(&mesh.node_coordinates[3 * static_cast<size_t>(i)]), 0);
-  old_temperature_ = next_ = temperature_;
+  old_temperature_ = next_ = outside_ = temperature_;
   change_.assign(mesh.nodes, 0.0);
   started_.assign(mesh.nodes, 0.0);
   for (auto* field : {&void_fraction_, &old_void_fraction_, &next_void_fraction_}) field->assign(mesh.nodes, 1.0);
@@ -133,7 +133,7 @@ int EnergyEquation::solve(double time, const Bdf& bdf, double dt, const Particle
     at_node[i] += heat[i];
     const int b = conditions_.entered_boundary()[i];
     if (b >= 0 && outflow[i] < 0) {
-      entering[i] = (*conditions_[b].value)(position(i), end);
+      entering[i] = conditions_[b].has_value ? (*conditions_[b].value)(position(i), end) : outside_[i];
       coefficient[i] -= capacity * outflow[i];
       at_node[i] -= capacity * outflow[i] * entering[i];
     }
@@ -183,6 +183,7 @@ void EnergyEquation::add_state(std::vector<Fluid::StateArray>& arrays) {
   arrays.push_back({"temperature", &temperature_, 1});
   arrays.push_back({"old_temperature", &old_temperature_, 1});
   arrays.push_back({"temperature_change", &change_, 1});
+  arrays.push_back({"temperature_outside", &outside_, 1});
   arrays.push_back({"energy_void_fraction", &void_fraction_, 1});
   arrays.push_back({"energy_old_void_fraction", &old_void_fraction_, 1});
   arrays.push_back({"energy_started", &started_, 1});

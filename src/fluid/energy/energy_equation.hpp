@@ -57,7 +57,9 @@ class EnergyEquation {
   void accept();
 
   /// Replaces the initial temperature, [nodes] K.
-  void set_initial(const std::vector<double>& temperature) { temperature_ = old_temperature_ = next_ = temperature; }
+  void set_initial(const std::vector<double>& temperature) {
+    temperature_ = old_temperature_ = next_ = outside_ = temperature;
+  }
   std::span<const double> temperature() const { return temperature_; }
   std::span<const double> temperature_change() const { return change_; }
   /// W per boundary, heat that left through it in the last step: conducted, and carried by the flow relative to the
@@ -81,6 +83,7 @@ class EnergyEquation {
   std::vector<double> mass_;  ///< [nodes] m3, lumped
 
   std::vector<double> temperature_, old_temperature_, next_, change_;
+  std::vector<double> outside_;  ///< [nodes] K, at the start: of what comes in where nothing else is given
   std::vector<double> void_fraction_, old_void_fraction_, next_void_fraction_;  ///< of steps n, n-1, n+1
   std::vector<double> started_;                                                 ///< [nodes] 1 after the first step
   std::vector<double> heat_flow_;
