@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <utility>
 
 namespace silt {
 namespace {
@@ -24,12 +25,15 @@ void start(int* argc, char*** argv) {
   setenv("SCOTCH_PTHREAD_NUMBER", "1", 0);
   PetscInitialize(argc, argv, nullptr, nullptr);
   PetscPushErrorHandler(keep_message, nullptr);
-  // What other ranks add to a row of a matrix or vector is added in their order, not in that of arrival: the same input
-  // on as many ranks gives the same bits. Asking again marks the options as used, which they are not on one rank.
-  for (const char* name : {"-matstash_reproduce", "-vecstash_reproduce"}) {
+  if (mpi_size() == 1) return;
+  // Sums in the order of the ranks instead of that of arrival (entries of matrices that other ranks add, products of
+  // the multigrid hierarchies): the same input on as many ranks gives the same bits. Asking again marks the options as
+  // used, which they are not on one rank.
+  for (const auto& [name, value] : {std::pair("-matptap_via", "allatonce"), std::pair("-matstash_legacy", "yes"),
+                                    std::pair("-matstash_reproduce", "yes"), std::pair("-vecstash_reproduce", "yes")}) {
     PetscBool given = PETSC_FALSE;
     PetscOptionsHasName(nullptr, nullptr, name, &given);
-    if (!given) PetscOptionsSetValue(nullptr, name, nullptr);
+    if (!given) PetscOptionsSetValue(nullptr, name, value);
     PetscOptionsHasName(nullptr, nullptr, name, &given);
   }
 }
