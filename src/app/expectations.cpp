@@ -254,7 +254,7 @@ Expectations::Verdict Expectations::verdict(const ExpectationOptions& options, c
 
 Expectations::Verdict Expectations::verdict_along(const ExpectationOptions& options, const std::vector<double>& values,
                                                   double spacing) {
-  if (values.empty()) return judged(options, options.value.value_or(0), unknown, unknown);
+  if (values.empty() || !numbers(values)) return judged(options, options.value.value_or(0), unknown, unknown);
   const double count = static_cast<double>(values.size());
   const double average = options.factor * std::accumulate(values.begin(), values.end(), 0.0) / count;
   if (options.value) {
