@@ -34,7 +34,7 @@ FAMILIES = {
     "orders_turbulence": ("manufactured_triangle_k_epsilon", "manufactured_quadrilateral_k_epsilon", "manufactured_triangle_k_omega", "manufactured_quadrilateral_k_omega"),
     "orders_exact": ("isentropic_vortex_order", "sod_tube_order"),
 }
-THERMAL = ("natural_convection", "heated_couette")
+THERMAL = ("natural_convection", "heated_couette", "heated_duct")
 
 
 def triangles(cells):
