@@ -44,7 +44,10 @@ void TimeOptions::options(OptionGroup& option) {
   option("courant", courant, "-", "target of the largest |u| dt/h, which the step follows; 0: constant step",
          non_negative);
   option("least_step", least_step, "s",
-         "a step that must be shorter than this stops the run; 0: a thousandth of -time_step", non_negative);
+         "a step that fails is repeated shorter; where it would have to be shorter than this the run stops; 0: a "
+         "thousandth of "
+         "-time_step",
+         non_negative);
 }
 
 /// Adds the wall time of its scope to a task.
