@@ -59,7 +59,6 @@ void Budget::start(const OutputDirectory& directory, const Fluid* fluid, Particl
     columns.insert(columns.end(), {"particle_volume", "deposited_volume"});
   }
   table_ = directory.table("ledger.csv", columns);
-  fluid_known_ = fluid == nullptr;
   if (particles) {
     particle_momentum_ = particles->momentum();
     particle_mass_ = particles->total_mass();
@@ -110,8 +109,8 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeA
   if (with_fluid_) {
     const Vec3 through = moment.dt * moment.fluid_step.boundary_force;
     Vec3 unaccounted = Vec3::Zero();
-    if (fluid_known_) {
-      unaccounted = moment.fluid_step.momentum + moment.fluid_step.lent - fluid_momentum_ - through;
+    if (fluid_.known) {
+      unaccounted = moment.fluid_step.momentum + moment.fluid_step.lent - fluid_.momentum - through;
       if (exchange) unaccounted -= exchange->drag_on_fluid + exchange->response_on_fluid + exchange->pressure_on_fluid;
     }
     add(row, moment.fluid_step.momentum);
@@ -119,13 +118,13 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeA
     add(row, unaccounted);
     if (with_energy_) {
       const double energy = moment.fluid_step.heat, supply = moment.dt * moment.fluid_step.energy_supply;
-      const double from = energy_from(exchanged), left = fluid_known_ ? energy - fluid_energy_ - supply - from : 0;
+      const double from = energy_from(exchanged), left = fluid_.known ? energy - fluid_.energy - supply - from : 0;
       row.insert(row.end(), {energy, supply, from, left, exchanged.work ? exchanged.work->in_transit : 0,
                              particles ? particles->kinetic_energy() + particles->rotational_energy() : 0});
-      fluid_energy_ = energy;
+      fluid_.energy = energy;
     }
-    fluid_momentum_ = moment.fluid_step.momentum + moment.fluid_step.lent;
-    fluid_known_ = true;
+    fluid_.momentum = moment.fluid_step.momentum + moment.fluid_step.lent;
+    fluid_.known = true;
   }
   if (with_particles_) {
     for (const Vec3& v :

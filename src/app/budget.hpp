@@ -44,15 +44,25 @@ class Budget {
   /// Throws RunError on every rank when out of balance. Collective.
   double close(const Moment& moment, Particles* particles, const ExchangeAccounts& exchanged);
 
+  /// What the account of the next step opens with on the fluid's side: its momentum (N s) and a gas's energy (J), once
+  /// a step has told them. A run that goes on takes it over from the one before.
+  struct Opening {
+    bool known = false;
+    Vec3 momentum = Vec3::Zero();
+    double energy = 0;
+  };
+  const Opening& opening() const { return fluid_; }
+  void open_with(const Opening& opening) { fluid_ = opening; }
+
  private:
   static double energy_from(const ExchangeAccounts& exchanged);
 
   LedgerOptions options_;
   bool with_fluid_, with_particles_, with_energy_ = false;
   CsvWriter table_;
-  Vec3 particle_momentum_ = Vec3::Zero(), fluid_momentum_ = Vec3::Zero();
-  double particle_mass_ = 0, fluid_energy_ = 0;
-  bool fluid_known_ = false;
+  Opening fluid_;
+  Vec3 particle_momentum_ = Vec3::Zero();
+  double particle_mass_ = 0;
 };
 
 }  // namespace silt

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "app/budget.hpp"
 #include "app/expectations.hpp"
 #include "app/field_state.hpp"
 #include "app/profiles.hpp"
@@ -44,6 +45,11 @@ void Checkpoint::write(const std::string& path, const RunParts& parts, const Run
   if (parts.coupling) save_fields(parts.mesh, "coupling", parts.coupling->state(), to);
   parts.profiles->save(to);
   parts.expectations->save(to, clock.time);
+  const Budget::Opening& opening = parts.budget->opening();
+  to.add("ledger_opening", 5,
+         mpi_rank() == 0 ? std::vector<double>{opening.known ? 1.0 : 0.0, opening.momentum[0], opening.momentum[1],
+                                               opening.momentum[2], opening.energy}
+                         : std::vector<double>{});
   to.write(path);
 }
 
@@ -67,6 +73,8 @@ RunClock Checkpoint::load(const CheckpointReader& from, const RunParts& parts) {
   }
   parts.profiles->load(from);
   parts.expectations->load(from);
+  const auto opening = from.numbers("ledger_opening");
+  parts.budget->open_with({opening[0] != 0, {opening[1], opening[2], opening[3]}, opening[4]});
   return {from.number("time"), from.number("dt"), from.number("shortened"),
           static_cast<long long>(from.number("step"))};
 }

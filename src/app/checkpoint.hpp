@@ -11,6 +11,7 @@
 
 namespace silt {
 
+class Budget;
 class Expectations;
 class Profiles;
 
@@ -34,6 +35,7 @@ struct RunParts {
   Coupling* coupling;
   Profiles* profiles;          ///< averages so far
   Expectations* expectations;  ///< what they have noted so far
+  Budget* budget;              ///< what its next account opens with
 };
 
 /// Where the run's clock stands.

@@ -131,6 +131,9 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
   const RunClock clock = Checkpoint::load(*restart_, run_parts());
   now_.time = clock.time, now_.dt = clock.dt, now_.step = clock.step;
   shortened_ = clock.shortened;
+  if (ended())
+    restart_->refuse(
+        fmt::format("is of t = {:g} s: nothing is left to run until -time_end {:g}", now_.time, time_options_.end));
 }
 
 std::string Simulation::description() const {
@@ -168,8 +171,8 @@ int Simulation::check() {
 int Simulation::run() {
   const bool fresh = !restart_;
   start();
-  if (fresh && uneven_at_start()) return share_out_anew;
-  while (now_.time < time_options_.end * (1 - 1e-12)) {
+  if (fresh && !ended() && uneven_at_start()) return share_out_anew;
+  while (!ended()) {
     choose_step();
     try {
       step();
@@ -178,7 +181,7 @@ int Simulation::run() {
       throw RunError(error.what() + save_last_good());
     }
     if (checkpoint_->due(now_.time)) write_checkpoint("checkpoint.h5", costs());
-    if (balance_->due(now_.time) && uneven()) return share_out_anew;
+    if (balance_->due(now_.time) && !ended() && uneven()) return share_out_anew;
   }
   finish();
   return expectations_->judge(output_->directory(), *probes_, *profiles_) ? 0 : 1;
@@ -250,6 +253,7 @@ void Simulation::keep_state() {
     good_.last_step = coupling_->last_step();
   }
   good_.profiles = *profiles_;
+  good_.opening = budget_->opening();
   good_.clock = {now_.time, now_.dt, shortened_, now_.step};
   substeps_since_good_ = 0;
 }
@@ -286,6 +290,7 @@ std::string Simulation::save_last_good() {
     now_.time = good_.clock.time, now_.dt = good_.clock.dt, now_.step = good_.clock.step;
     shortened_ = good_.clock.shortened;
     *profiles_ = *good_.profiles;
+    budget_->open_with(good_.opening);
     if (now_.time > output_->last()) output_->write(now_);
     write_checkpoint("last_good.h5", costs());
   } catch (const RunError& error) {
@@ -296,7 +301,7 @@ std::string Simulation::save_last_good() {
 }
 
 RunParts Simulation::run_parts() const {
-  return {*mesh_, fluid_.get(), particles_.get(), coupling_.get(), profiles_.get(), expectations_.get()};
+  return {*mesh_, fluid_.get(), particles_.get(), coupling_.get(), profiles_.get(), expectations_.get(), budget_.get()};
 }
 
 void Simulation::write_checkpoint(const std::string& file, const Costs& costs) {
@@ -352,7 +357,7 @@ void Simulation::report() {
   tracked_->sample(now_, quantities);
   statistics_->sample(now_, quantities);
   expectations_->sample(now_.time, quantities);
-  if (output_->due(now_.time) || now_.time >= time_options_.end * (1 - 1e-12)) {
+  if (output_->due(now_.time) || ended()) {
     output_->write(now_);
     probes_->write_lines(now_);
     profiles_->write(output_->directory());

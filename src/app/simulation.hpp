@@ -86,6 +86,7 @@ class Simulation {
   Costs costs() const;
   /// Goes back to the last good state, writes it and returns words about it for the error that ends the run.
   std::string save_last_good();
+  bool ended() const { return now_.time >= time_options_.end * (1 - 1e-12); }
   void finish();
   std::string description() const;
 
@@ -123,6 +124,7 @@ class Simulation {
     std::optional<Profiles> profiles;
     std::vector<std::vector<double>> flow, exchange;  ///< arrays of fluid and coupling
     double largest_diameter = 0, last_step = 0;       ///< of the coupling
+    Budget::Opening opening;
     RunClock clock;
   };
   Good good_;

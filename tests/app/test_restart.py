@@ -126,9 +126,12 @@ class Folder:
         with open(self.file("out", "expectations.csv")) as file:
             return float(next(csv.DictReader(file))["computed"])
 
-    def times(self, table="diagnostics.csv"):
+    def column(self, table, name):
         with open(self.file("out", table)) as file:
-            return [float(row["time"]) for row in csv.DictReader(file)]
+            return np.array([float(row[name]) for row in csv.DictReader(file)])
+
+    def times(self, table="diagnostics.csv"):
+        return list(self.column(table, "time"))
 
 
 def main():
@@ -167,6 +170,10 @@ def main():
                         check(f"{label}: fluid {array} as without interruption", far <= allowed, f"{far:.2g}")
                 for table in ("diagnostics.csv", "ledger.csv", "walls.csv"):
                     check(f"{label}: {table} is continued", parts.times(table) == whole.times(table))
+                if name == "bed":
+                    left = [f.column("ledger.csv", "unaccounted_z") for f in (whole, parts)]
+                    far = np.abs(left[0] - left[1]).max() / np.abs(left[0]).max()
+                    check(f"{label}: the ledger of the fluid is continued", far <= max(allowed, 1e-9), f"{far:.2g}")
                 if name == "grains":
                     averages = [f.numbers("profile_layers.csv") for f in (whole, parts)]
                     check(f"{label}: averages go on", np.allclose(*averages, rtol=1e-10 if allowed == 0 else 1e-4, atol=1e-12), f"{np.abs(averages[0] - averages[1]).max():.2g}")
@@ -211,6 +218,7 @@ def main():
         foreign = sorted(glob.glob(folder.file("out", "particles", "*.h5")))[0]
         for file, words, options in (("flipped.h5", "damaged", []), ("cut.h5", "damaged", []), ("text.h5", "no HDF5 file", []),
                                      (foreign, "no checkpoint", []), ("nowhere.h5", "does not exist", []),
+                                     ("good.h5", "nothing is left to run", ["-time_end", f"{reached:.6f}"]),
                                      ("good.h5", "materials", ["-material_sand_density", "2600"]),
                                      ("good.h5", "walls", ["-wall_extra_type", "sphere", "-wall_extra_side", "outside", "-wall_extra_point", "0.002, 0.002, 0.028", "-wall_extra_radius", "0.001"])):
             for ranks in (1, 2):
