@@ -67,8 +67,7 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
     : options_(options), carried_(std::move(carried)) {
   options.read("", case_);
   options.read("time", time_options_);
-  MeshOptions mesh;
-  options.read("mesh", mesh);
+  const MeshOptions mesh(options);
   checkpoint_ = std::make_unique<Checkpoint>(options);
   balance_ = std::make_unique<Balance>(options);
   restart_ = Checkpoint::open(options);

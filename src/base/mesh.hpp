@@ -19,6 +19,9 @@ struct MeshOptions {
   std::vector<int> periodic = {0, 0, 0};
   double scale = 1;
   std::string weight = "1";
+  MeshOptions() = default;
+  /// Reads `-mesh_...`. Throws UserError for what has no meaning with the type chosen.
+  explicit MeshOptions(Options& options);
   void options(OptionGroup& option);
 };
 

@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/expression.hpp"
+#include "base/gmsh_file.hpp"
 #include "base/mesh.hpp"
 
 namespace silt {
@@ -138,10 +139,22 @@ void name_facets(DM plex, const std::string& file) {
   }
 }
 
+/// Throws UserError on every rank for a file that is damaged.
+void check_gmsh(const std::string& file) {
+  std::string fault = mpi_rank() == 0 ? fault_of_gmsh_file(file) : "";
+  int length = static_cast<int>(fault.size());
+  MPI_Bcast(&length, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  fault.resize(static_cast<size_t>(length));
+  MPI_Bcast(fault.data(), length, MPI_CHAR, 0, PETSC_COMM_WORLD);
+  if (!fault.empty())
+    throw UserError(fmt::format("option -mesh_file: '{}' is not a Gmsh mesh that can be read: {}", file, fault));
+}
+
 DmHandle read_gmsh(const std::string& file) {
   if (file.empty()) throw UserError("option -mesh_file: a mesh of type file needs a Gmsh file");
   if (!std::filesystem::is_regular_file(file))
     throw UserError(fmt::format("option -mesh_file: '{}' does not exist", file));
+  check_gmsh(file);
   // Only the first rank reads, and where it fails PETSc leaves the others waiting: it tries alone first.
   PetscErrorCode code = 0;
   if (mpi_size() > 1 && mpi_rank() == 0) {
@@ -159,8 +172,18 @@ DmHandle read_gmsh(const std::string& file) {
 
 }  // namespace
 
+MeshOptions::MeshOptions(Options& options) {
+  options.read("mesh", *this);
+  if (!options.given("mesh_type") && options.given("mesh_file")) type = "file";
+  const bool is_file = type == "file";
+  const std::vector<const char*> of_boxes = {"cell", "lower", "upper", "cells", "periodic"}, of_files = {"file"};
+  for (const char* name : is_file ? of_boxes : of_files)
+    if (options.given(std::string("mesh_") + name))
+      throw UserError(fmt::format("option -mesh_{} has no meaning with -mesh_type {}", name, type));
+}
+
 void MeshOptions::options(OptionGroup& option) {
-  option("type", type, {"box", "file"}, "a box of cells, or a Gmsh file");
+  option("type", type, {"box", "file"}, "a box of cells, or a Gmsh file; a file when one is named");
   option("file", file, "Gmsh file (2.2 or 4.1) with a physical name for every boundary");
   option("cell", cell, {"hexahedron", "tetrahedron", "quadrilateral", "triangle"},
          "cell of a box; two-dimensional cells make a 2D mesh");

@@ -51,6 +51,12 @@ def options(*words):
     return list(words)
 
 
+def from_mesh(mesh, text=None):
+    """The case with a Gmsh file, of the text given, in place of the box."""
+    box = CASE.splitlines()[0]
+    return {**change(box, f"mesh: {{{mesh}}}"), **({} if text is None else {"x.msh": text})}
+
+
 # (what is wrong, files (over the right case), options, what the line must say)
 WRONG = [
     # options as such
@@ -85,12 +91,16 @@ WRONG = [
     ("an unknown cell", {}, options("-mesh_cell", "prism"), ["-mesh_cell", "hexahedron"]),
     ("no cells along x", {}, options("-mesh_cells", "0,4,16"), ["-mesh_cells"]),
     ("a box without volume", {}, options("-mesh_upper", "0.01,0,0.04"), ["-mesh_upper"]),
-    ("a mesh file that is not there", {}, options("-mesh_type", "file", "-mesh_file", "nowhere.msh"), ["nowhere.msh"]),
-    ("no mesh file named", {}, options("-mesh_type", "file"), ["-mesh_file"]),
-    ("a mesh file that is not Gmsh's", {"x.msh": "solid body\nendsolid\n"}, options("-mesh_type", "file", "-mesh_file", "x.msh"), ["x.msh"]),
-    ("an empty mesh file", {"x.msh": ""}, options("-mesh_type", "file", "-mesh_file", "x.msh"), ["x.msh"]),
-    ("a mesh file cut off", {"x.msh": GMSH_HEAD + "$Nodes\n8\n1 0 0 0\n2 1 0"}, options("-mesh_type", "file", "-mesh_file", "x.msh"), ["x.msh"]),
-    ("a mesh file of another version", {"x.msh": "$MeshFormat\n1.0 0 8\n$EndMeshFormat\n"}, options("-mesh_type", "file", "-mesh_file", "x.msh"), ["x.msh"]),
+    ("a mesh file that is not there", from_mesh("file: nowhere.msh"), [], ["nowhere.msh"]),
+    ("no mesh file named", from_mesh("type: file"), [], ["-mesh_file"]),
+    ("a mesh file and a box", {}, options("-mesh_file", "x.msh"), ["-mesh_file", "-mesh_type box"]),
+    ("a mesh file that is to be periodic", from_mesh("file: x.msh, periodic: [1, 0, 0]"), [], ["-mesh_periodic", "-mesh_type file"]),
+    ("a mesh file that is not Gmsh's", from_mesh("file: x.msh", "solid body\nendsolid\n"), [], ["x.msh"]),
+    ("an empty mesh file", from_mesh("file: x.msh", ""), [], ["x.msh"]),
+    ("a mesh file cut off", from_mesh("file: x.msh", GMSH_HEAD + "$Nodes\n8\n1 0 0 0\n2 1 0"), [], ["x.msh"]),
+    ("a mesh file of another version", from_mesh("file: x.msh", "$MeshFormat\n1.0 0 8\n$EndMeshFormat\n"), [], ["x.msh"]),
+    ("a mesh of curved cells", from_mesh("file: x.msh", GMSH_HEAD + "$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 9 2 1 1 1 1 1 1 1 1\n$EndElements\n"), [], ["x.msh", "line 10", "linear"]),
+    ("a node that is not there", from_mesh("file: x.msh", GMSH_HEAD + "$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 1 2 1 1 1 7\n$EndElements\n"), [], ["x.msh", "line 10", "node 7"]),
     ("periodic with one cell", {}, options("-mesh_cells", "1,4,16", "-mesh_periodic", "1,0,0"), ["periodic"]),
     # boundaries
     ("a boundary without a condition", remove("  x_min: {type: no_slip}\n"), [], ["x_min"]),
