@@ -72,7 +72,7 @@ class TurbulenceModulation {
   static std::unique_ptr<TurbulenceModulation> create(const Mesh& mesh, const std::vector<double>& mass,
                                                       const Fluid& fluid, Options& options);
   TurbulenceModulation(ModulationModels::Any model, const Mesh& mesh, const std::vector<double>& mass)
-      : model_(std::move(model)), mesh_(mesh), mass_(mass) {}
+      : model_(model), mesh_(mesh), mass_(mass) {}
   std::string name() const;
   /// Fills the load's turbulence from the flow and the particles as they are; the kernel holds the owned particles'
   /// places, and perhaps more. Throws RunError when the sums differ. Collective.
