@@ -241,7 +241,17 @@ Place Locator::walk(const double* point, int hint) const {
 template <Cell kind>
 Place Locator::find_kind(const double* x, int hint) const {
   if (mesh_.cells == 0) return {};
-  if (hint >= 0) return walk<kind>(x, hint);
+  if (hint >= 0) {
+    // Most points that move are still well inside their cell.
+    Place place;
+    if ((FacetTable<kind>::simplex || affine_[hint]) && invert<kind>(hint, x, place.xi.data()) &&
+        least_depth<kind>(place.xi.data()) > tie_tolerance) {
+      place.state = Place::State::inside;
+      place.cell = hint;
+      return place;
+    }
+    return walk<kind>(x, hint);
+  }
   Place found = search<kind>(x);
   if (!found.inside() || least_depth<kind>(found.xi.data()) > tie_tolerance) return found;
   double moved[3];

@@ -60,12 +60,20 @@ int CellGrid::neighbours(int cell, Run* run) const {
   return runs;
 }
 
-int CellGrid::later_neighbours(int cell, Run* run) const {
-  const int row = count_[0], layer = count_[0] * count_[1];
-  run[0] = {cell, cell + 1};
-  run[1] = {cell + row - 1, cell + row + 1};
-  for (int y = -1; y <= 1; ++y) run[3 + y] = {cell + layer + y * row - 1, cell + layer + y * row + 1};
-  return 5;
+int CellGrid::later_rows(int row, int* rows, int& first, int& last) const {
+  const int y = row % count_[1], z = row / count_[1];
+  const auto at_a_wrap = [&](int d, int at) { return wraps_[d] && (at == 0 || at == count_[d] - 1); };
+  first = last = 0;
+  if (at_a_wrap(1, y) || at_a_wrap(2, z)) return 0;
+  first = wraps_[0] ? 1 : 0;
+  last = std::max(first, wraps_[0] ? count_[0] - 1 : count_[0]);
+  int found = 0;
+  rows[found++] = row;
+  if (y + 1 < count_[1]) rows[found++] = row + 1;
+  if (z + 1 < count_[2])
+    for (int beside = std::max(y - 1, 0); beside <= std::min(y + 1, count_[1] - 1); ++beside)
+      rows[found++] = (z + 1) * count_[1] + beside;
+  return found;
 }
 
 CellOrder order_along(const CellGrid& grid, const Store& store) {
@@ -77,6 +85,7 @@ CellOrder order_along(const CellGrid& grid, const Store& store) {
   for (int p = 0; p < store.owned; ++p) {
     cell[p] = grid.cell_of(store.motion[p].position);
     ++start[cell[p] + 1];
+    sorted.steps_back += p > 0 && cell[p] < cell[p - 1];
   }
   for (int c = 0; c < grid.cells(); ++c) start[c + 1] += start[c];
   // The starts serve as places to write at and are shifted back.
@@ -86,13 +95,13 @@ CellOrder order_along(const CellGrid& grid, const Store& store) {
   return sorted;
 }
 
-Bins::Bins(CellOrder&& order, const Store& store) : start(std::move(order.start)) {
+Bins::Bins(CellOrder&& order, const Store& store) : start(std::move(order.start)), particle(std::move(order.order)) {
   constexpr int widest = 8;  // pack
   const int n = store.owned;
   for (auto* values : {&x, &y, &z, &r}) values->resize(n + widest);
-  for (int p = 0; p < n; ++p) {
-    const Motion& motion = store.motion[p];
-    x[p] = motion.position[0], y[p] = motion.position[1], z[p] = motion.position[2], r[p] = motion.radius;
+  for (int k = 0; k < n; ++k) {
+    const Motion& motion = store.motion[particle[k]];
+    x[k] = motion.position[0], y[k] = motion.position[1], z[k] = motion.position[2], r[k] = motion.radius;
   }
 }
 
@@ -122,8 +131,7 @@ bool any_within(const CellGrid& grid, const Bins& bins, const Periods& periods, 
 }
 
 void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const Periods& periods,
-                const PairReach& pair_reach, const ContactMemory& memory, void (*near)(NearSearch&),
-                ContactLists& lists) {
+                const PairReach& pair_reach, const ContactMemory& memory, const Kernels& kernels, ContactLists& lists) {
   const double per_skin = 1 / pair_reach.skin;
   const auto remember = [&](int a, int b, double gap) {
     const std::int64_t id_a = store.id[a], id_b = store.id[b];
@@ -137,15 +145,28 @@ void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const
     }
     lists.add_candidate(i, j, (gap - pair_reach.enter_gap) * per_skin);
   };
-  std::vector<int> found;
-  std::vector<double> gaps;
-  NearSearch::Stretch stretch[27];
-  NearSearch search;
+  std::vector<int> found(1024), seeker(1024);
+  std::vector<double> squares(1024);
+  const auto make_room = [&](int room) {
+    if (room <= static_cast<int>(found.size())) return;
+    found.resize(2 * room), seeker.resize(2 * room), squares.resize(2 * room);
+  };
+  RowSearch row;
+  NearSearch& search = row.search;
   search.x[0] = own.x.data(), search.x[1] = own.y.data(), search.x[2] = own.z.data(), search.radius = own.r.data();
-  search.stretch = stretch;
   search.periods = &periods;
   search.reach = pair_reach.leave_gap + pair_reach.skin;
-  const auto look_at = [&](const CellGrid::Run* run, int runs) {
+  const auto use_room = [&] {
+    search.found = found.data(), search.square = squares.data();
+    row.seeker = seeker.data(), row.room = static_cast<int>(found.size());
+  };
+
+  // One sphere against a cell and all around it.
+  NearSearch::Stretch stretch[27];
+  search.stretch = stretch;
+  const auto look_around = [&](int cell) {
+    CellGrid::Run run[27];
+    const int runs = grid.neighbours(cell, run);
     search.stretches = 0;
     int room = 8;
     for (int q = 0; q < runs; ++q) {
@@ -154,34 +175,52 @@ void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const
       stretch[search.stretches++] = one;
       room += one.end - one.begin;
     }
-    if (room > static_cast<int>(found.size())) found.resize(2 * room), gaps.resize(2 * room);
-    search.found = found.data(), search.gap = gaps.data();
+    make_room(room);
+    use_room();
+    search.across = periods.any;
   };
   const auto around = [&](const Motion& motion) {
     for (int d = 0; d < 3; ++d) search.sphere[d] = motion.position[d];
     search.sphere[3] = motion.radius;
-    near(search);
+    kernels.near(search);
   };
+  const auto gap_of = [&](int k, double radius) { return std::sqrt(squares[k]) - (radius + own.r[found[k]]); };
 
-  // Owned particles are sorted along the cells, so a pair is found from the one that stands first.
-  CellGrid::Run run[27];
-  for (int c = 0; c < grid.cells(); ++c) {
-    if (own.start[c] == own.start[c + 1]) continue;
-    const bool inner = grid.inner(c);
-    look_at(run, inner ? grid.later_neighbours(c, run) : grid.neighbours(c, run));
-    search.across = periods.any && !inner;  // positions are wrapped into the domain
-    for (int s = own.start[c]; s < own.start[c + 1]; ++s) {
-      search.after = s;
-      around(store.motion[s]);
-      for (int k = 0; k < search.count; ++k) remember(s, found[k], gaps[k]);
+  // Particles of a rank stand along the cells, and a pair is found from the one that stands first: from its row where
+  // no periodic side is near.
+  const auto across_sides = [&](int first_cell, int last_cell) {
+    for (int c = first_cell; c < last_cell; ++c) {
+      if (own.start[c] == own.start[c + 1]) continue;
+      look_around(c);
+      for (int s = own.start[c]; s < own.start[c + 1]; ++s) {
+        search.after = s;
+        around(store.motion[own.particle[s]]);
+        for (int k = 0; k < search.count; ++k) remember(own.particle[s], own.particle[found[k]], gap_of(k, own.r[s]));
+      }
     }
+  };
+  row.cells = grid.cells_a_row();
+  for (int r = 0; r < grid.rows(); ++r) {
+    int rows[5];
+    const int here = r * row.cells;
+    row.rows = grid.later_rows(r, rows, row.cell, row.last);
+    for (int q = 0; q < row.rows; ++q) row.start[q] = &own.start[rows[q] * row.cells];
+    across_sides(here, here + row.cell);
+    while (row.cell < row.last) {
+      use_room();
+      kernels.near_row(row);
+      for (int k = 0; k < search.count; ++k)
+        remember(own.particle[seeker[k]], own.particle[found[k]], gap_of(k, own.r[seeker[k]]));
+      if (search.count == 0) make_room(row.needed);
+    }
+    across_sides(here + row.last, here + row.cells);
   }
   search.after = -1;
-  search.across = periods.any;
   for (int g = store.owned; g < store.all(); ++g) {
-    look_at(run, grid.neighbours(grid.cell_of(store.motion[g].position), run));
-    around(store.motion[g]);
-    for (int k = 0; k < search.count; ++k) remember(found[k], g, gaps[k]);
+    const Motion& ghost = store.motion[g];
+    look_around(grid.cell_of(ghost.position));
+    around(ghost);
+    for (int k = 0; k < search.count; ++k) remember(own.particle[found[k]], g, gap_of(k, ghost.radius));
   }
 }
 

@@ -29,14 +29,12 @@ class CellGrid {
     int first, last;
   };
   int neighbours(int cell, Run* run) const;  ///< at most 27 runs
-  /// Whether the cell has neighbours on all sides without a wrap.
-  bool inner(int cell) const {
-    const int at[3] = {cell % count_[0], cell / count_[0] % count_[1], cell / (count_[0] * count_[1])};
-    return at[0] > 0 && at[0] < count_[0] - 1 && at[1] > 0 && at[1] < count_[1] - 1 && at[2] > 0 &&
-           at[2] < count_[2] - 1;
-  }
-  /// An inner cell and those of its neighbours that have higher numbers: 5 runs.
-  int later_neighbours(int cell, Run* run) const;
+  /// Rows of cells along x; cell c is the (c % cells_a_row())-th of row c / cells_a_row().
+  int rows() const { return count_[1] * count_[2]; }
+  int cells_a_row() const { return count_[0]; }
+  /// The row and those of its neighbours that have higher numbers, at most 5, of which the cells [first, last) have no
+  /// neighbour across a periodic side; first = last where none of the row is such.
+  int later_rows(int row, int* rows, int& first, int& last) const;
 
  private:
   int count_[3];
@@ -48,14 +46,15 @@ class CellGrid {
 struct CellOrder {
   std::vector<int> order;  ///< for Store::reorder
   std::vector<int> start;  ///< [cells + 1] where each cell begins in it
+  int steps_back = 0;      ///< particles that stand behind one of a later cell: 0 when all stand in this order already
 };
 CellOrder order_along(const CellGrid& grid, const Store& store);
 
 /// Positions and radii of the owned particles, sorted along the cells of a grid, for searches.
 struct Bins {
   std::vector<int> start;          ///< [cells + 1]
+  std::vector<int> particle;       ///< who stands where
   std::vector<double> x, y, z, r;  ///< and a few more entries, for whole packs
-  /// The particles must have been brought into the order.
   Bins(CellOrder&& order, const Store& store);
 };
 
@@ -69,10 +68,9 @@ struct PairReach {
   double enter_gap = 0, leave_gap = 0, skin = 0, memory_gap = 0;
 };
 
-/// Fills the lists, which are empty, with all pairs of an owned particle and a particle of higher local index (owned or
-/// ghost) nearer than leave_gap + skin. `own`: the bins of the owned particles; `near`: one of the Kernels.
+/// Fills the lists, which are empty, with all pairs of two owned particles, or of one and a ghost, nearer than leave_gap
+/// + skin. `own`: the bins of the owned particles.
 void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const Periods& periods,
-                const PairReach& pair_reach, const ContactMemory& memory, void (*near)(NearSearch&),
-                ContactLists& lists);
+                const PairReach& pair_reach, const ContactMemory& memory, const Kernels& kernels, ContactLists& lists);
 
 }  // namespace silt

@@ -90,9 +90,22 @@ struct NearSearch {
   const Periods* periods = nullptr;
   double sphere[4] = {};  ///< x, y, z, radius of the one
   double reach = 0;       ///< m, surfaces further apart are not near
-  int* found = nullptr;   ///< out: numbers of those near; room for all looked at and seven
-  double* gap = nullptr;  ///< out: m, between their surfaces
-  int count = 0;          ///< out
+  int* found = nullptr;      ///< out: numbers of those near; room for all looked at and seven
+  double* square = nullptr;  ///< out: m2, squared distances of their centres
+  int count = 0;             ///< out
+};
+
+/// The pairs of near spheres of a row of cells of a grid: of each cell with itself, with the next one along the row
+/// and with the three around it in each of the rows behind.
+struct RowSearch {
+  NearSearch search;             ///< the many, the reach, and what is found: the partners
+  const int* start[5] = {};      ///< [cells + 1] where the cells begin among the many: of the row, of those behind it
+  int rows = 0;                  ///< how many there are
+  int cells = 0;                 ///< in a row
+  int cell = 0, last = 0;        ///< in and out: the next cell to look at, those before `last`
+  int* seeker = nullptr;         ///< out: the first of each pair
+  int room = 0;                  ///< of the arrays of what is found; the search stops where it might not suffice
+  int needed = 0;                ///< out: for the cell it stopped at
 };
 
 /// Contacts with walls: the points the geometry gave, with history as for pairs.
@@ -162,6 +175,7 @@ struct Kernels {
   void (*walls)(WallSweep&);
   void (*integrate)(Integration&);
   void (*near)(NearSearch&);
+  void (*near_row)(RowSearch&);
 };
 
 extern const Kernels plain_kernels, avx2_kernels, avx512_kernels;

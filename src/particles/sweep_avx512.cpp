@@ -4,5 +4,5 @@
 
 namespace silt {
 const Kernels avx512_kernels = {"avx512",           avx512::pair_sweep, avx512::candidate_sweep,
-                                avx512::wall_sweep, avx512::integrate,  avx512::near_sphere};
+                                avx512::wall_sweep, avx512::integrate,  avx512::near_sphere, avx512::near_row};
 }

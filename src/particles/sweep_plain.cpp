@@ -4,5 +4,5 @@
 
 namespace silt {
 const Kernels plain_kernels = {"plain",           plain::pair_sweep, plain::candidate_sweep,
-                               plain::wall_sweep, plain::integrate,  plain::near_sphere};
+                               plain::wall_sweep, plain::integrate,  plain::near_sphere, plain::near_row};
 }

@@ -72,9 +72,7 @@ void compare(const Periods& periods, double gap, Share share) {
 
   const double reach = 1 + gap;
   const CellGrid grid(vec3(lower), vec3(upper), Vec3::Zero(), periods, reach, store.owned);
-  CellOrder sorted = order_along(grid, store);
-  store.reorder(sorted.order, store.present);
-  const Bins own(std::move(sorted), store);
+  const Bins own(order_along(grid, store), store);
   Halo halo(PETSC_COMM_WORLD);
   halo.build(store, periods, grid, own, reach, gap);
   const std::set<std::int64_t> got(store.id.begin() + store.owned, store.id.end());
