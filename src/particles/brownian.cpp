@@ -63,7 +63,7 @@ BrownianWay Brownian::act(Store& store, const Integration& step, double time) co
       const double inverse_inertia = 2.5 * motion.inverse_mass / (motion.radius * motion.radius);
       const double kick = std::sqrt(energy * inverse_inertia * -std::expm1(-2 * store.turning[p].rate * h));
       const auto c = deviates(2);
-      for (int d = 0; d < 3; ++d) motion.spin[d] += step.turn[d] * kick * c[d];
+      for (int d = 0; d < 3; ++d) store.rotation[p].spin[d] += step.turn[d] * kick * c[d];
     }
     largest = std::max(largest, store.way(p));
     longest = std::max(longest, jump);

@@ -3,16 +3,24 @@
 
 namespace silt {
 
-/// What a force law needs of a moving sphere: three records of four doubles, each one aligned load.
-struct alignas(32) Motion {
+/// What every step needs of a moving sphere: one cache line, two aligned loads of four doubles.
+struct alignas(64) Motion {
   double position[3];   ///< m
   double radius;        ///< m
   double velocity[3];   ///< m/s
   double inverse_mass;  ///< 1/kg
-  double spin[3];       ///< rad/s
-  double material;      ///< index into Materials (a whole number)
 };
-static_assert(sizeof(Motion) == 96);
+static_assert(sizeof(Motion) == 64);
+
+/// What a force law needs besides; stored apart, so that those that touch nothing move without it.
+struct alignas(32) Rotation {
+  double spin[3];   ///< rad/s
+  double material;  ///< index into Materials (a whole number)
+};
+static_assert(sizeof(Rotation) == 32);
+
+/// All a force law needs of a sphere.
+struct Body : Motion, Rotation {};
 
 /// One contact as the force laws see it, between particle i and a partner j: another particle, a ghost or a wall.
 /// `Real` is double or a pack of doubles (one contact a lane). Whoever makes contacts fills this and nothing else, so
@@ -80,7 +88,7 @@ SILT_INLINE void set_relative_motion(Contact<Real>& contact, const Real* velocit
 }
 
 /// The contact of a particle with a wall: R_eff = R, m_eff = m; the wall is rigid, so the arm is the distance.
-inline Contact<double> wall_contact(const Motion& particle, const WallPoint& point) {
+inline Contact<double> wall_contact(const Body& particle, const WallPoint& point) {
   Contact<double> contact;
   double velocity[3], rolling[3];
   for (int d = 0; d < 3; ++d) {

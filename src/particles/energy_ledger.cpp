@@ -50,9 +50,9 @@ constexpr bool has_spring = std::is_empty_v<typename Model::template History<dou
 EnergyLedger::EnergyLedger(Columns& columns)
     : column_(columns.add({.name = "energy_before", .width = 6, .output = false, .needed = false})) {}
 
-double EnergyLedger::energy(const Motion& motion) {
-  const double inertia = 0.4 * motion.radius * motion.radius;
-  return 0.5 / motion.inverse_mass * (vec3(motion.velocity).squaredNorm() + inertia * vec3(motion.spin).squaredNorm());
+double EnergyLedger::energy(const Body& body) {
+  const double inertia = 0.4 * body.radius * body.radius;
+  return 0.5 / body.inverse_mass * (vec3(body.velocity).squaredNorm() + inertia * vec3(body.spin).squaredNorm());
 }
 
 void EnergyLedger::trace(PairSweep& sweep) {
@@ -86,13 +86,13 @@ void EnergyLedger::begin(Store& store) {
     double* before = store.columns.row(column_, p);
     for (int d = 0; d < 3; ++d) {
       before[d] = store.motion[p].velocity[d];
-      before[3 + d] = store.motion[p].spin[d];
+      before[3 + d] = store.rotation[p].spin[d];
     }
   }
 }
 
-void EnergyLedger::went_from(const Motion& motion, const std::vector<double>& columns, const Columns& where) {
-  Motion before = motion;
+void EnergyLedger::went_from(const Body& body, const std::vector<double>& columns, const Columns& where) {
+  Body before = body;
   const double* row = columns.data() + where.offset(column_);
   for (int d = 0; d < 3; ++d) {
     before.velocity[d] = row[d];
@@ -107,7 +107,7 @@ void EnergyLedger::kicked(const Motion& motion, const Vec3& impulse) {
 
 void EnergyLedger::restart(const Store& store) {
   work_ = {};
-  for (int p = 0; p < store.owned; ++p) came(store.motion[p]);
+  for (int p = 0; p < store.owned; ++p) came(store.body(p));
   work_[Account::added] += stored_;
 }
 
@@ -121,7 +121,7 @@ void EnergyLedger::add_state(const State& state) {
 
 void EnergyLedger::working_motion(const EnergyStep& step, int p, Vec3& velocity, Vec3& spin) const {
   const Motion& motion = step.store.motion[p];
-  velocity = vec3(motion.velocity), spin = vec3(motion.spin);
+  velocity = vec3(motion.velocity), spin = vec3(step.store.rotation[p].spin);
   if (step.pass.late_share > 0) return;
   const Load& load = step.store.present[p];
   const double inverse_inertia = 2.5 * motion.inverse_mass / (motion.radius * motion.radius);
@@ -182,7 +182,8 @@ void EnergyLedger::add_pairs(const EnergyStep& step, Work& power, double& stored
   find_elastic(
       step.laws, count,
       [&](int k, int& pair) {
-        const Motion &a = store.motion[step.contacts.contact_i()[k]], &b = store.motion[step.contacts.contact_j()[k]];
+        const int i = step.contacts.contact_i()[k], j = step.contacts.contact_j()[k];
+        const Motion &a = store.motion[i], &b = store.motion[j];
         Vec3 apart = vec3(a.position) - vec3(b.position);
         for (int d = 0; d < 3; ++d)
           apart[d] -= step.periods.length[d] * std::nearbyint(apart[d] * step.periods.inverse[d]);
@@ -193,7 +194,7 @@ void EnergyLedger::add_pairs(const EnergyStep& step, Work& power, double& stored
         contact.effective_radius = a.radius * b.radius / (a.radius + b.radius);
         contact.effective_mass = 1 / (a.inverse_mass + b.inverse_mass);
         contact.radius = a.radius;
-        pair = static_cast<int>(a.material) * materials + static_cast<int>(b.material);
+        pair = static_cast<int>(store.rotation[i].material) * materials + static_cast<int>(store.rotation[j].material);
         return contact;
       },
       elastic_);
@@ -228,9 +229,9 @@ void EnergyLedger::add_walls(const EnergyStep& step, Work& power, double& stored
   find_elastic(
       step.laws, count,
       [&](int k, int& pair) {
-        const Motion& motion = store.motion[points[k].particle];
-        pair = static_cast<int>(motion.material) * materials + points[k].material;
-        return wall_contact(motion, points[k]);
+        const Body body = store.body(points[k].particle);
+        pair = static_cast<int>(body.material) * materials + points[k].material;
+        return wall_contact(body, points[k]);
       },
       elastic_);
   const bool extended = step.laws.setup().extended;
@@ -265,7 +266,7 @@ void EnergyLedger::add_fluid(const EnergyStep& step) {
   const double late = step.pass.late_share, h = step.h;
   for (int p = 0; p < store.owned; ++p) {
     const Motion& motion = store.motion[p];
-    const double* before = store.columns.row(column_, p);
+    const double *before = store.columns.row(column_, p), *now = store.rotation[p].spin;
     const double mass = 1 / motion.inverse_mass, inertia = 0.4 * mass * motion.radius * motion.radius;
     double work = 0;
     for (int d = 0; d < 3; ++d) {
@@ -273,8 +274,8 @@ void EnergyLedger::add_fluid(const EnergyStep& step) {
       const double torque = (1 - late) * store.previous[p].torque[d] + late * store.present[p].torque[d];
       const double impulse =
           mass * (motion.velocity[d] - before[d]) - h * step.pass.move[d] * (force + mass * step.pass.gravity[d]);
-      const double turn = inertia * (motion.spin[d] - before[3 + d]) - h * step.pass.turn[d] * torque;
-      work += 0.5 * impulse * (motion.velocity[d] + before[d]) + 0.5 * turn * (motion.spin[d] + before[3 + d]);
+      const double turn = inertia * (now[d] - before[3 + d]) - h * step.pass.turn[d] * torque;
+      work += 0.5 * impulse * (motion.velocity[d] + before[d]) + 0.5 * turn * (now[d] + before[3 + d]);
     }
     work_[Account::fluid] += work;
   }

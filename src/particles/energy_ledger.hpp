@@ -53,10 +53,10 @@ class EnergyLedger {
   /// Adds the work of the step; the lists must be those of the sweep.
   void account(const EnergyStep& step);
 
-  void came(const Motion& motion) { work_[Particles::EnergyAccount::added] += energy(motion); }
-  void went(const Motion& motion) { work_[Particles::EnergyAccount::removed] += energy(motion); }
+  void came(const Body& body) { work_[Particles::EnergyAccount::added] += energy(body); }
+  void went(const Body& body) { work_[Particles::EnergyAccount::removed] += energy(body); }
   /// Left within a step: with the velocities of its last account.
-  void went_from(const Motion& motion, const std::vector<double>& columns, const Columns& where);
+  void went_from(const Body& body, const std::vector<double>& columns, const Columns& where);
   void kicked(const Motion& motion, const Vec3& impulse);
   /// Begins anew: what is there counts as added.
   void restart(const Store& store);
@@ -71,7 +71,7 @@ class EnergyLedger {
   State state() const { return {work_, power_, stored_}; }
   void set_state(const State& state) { work_ = state.work, power_ = state.power, stored_ = state.stored; }
   void add_state(const State& state);
-  static double energy(const Motion& motion);
+  static double energy(const Body& body);
 
  private:
   /// Force at rest (N) and potential (J) of the normal law at every contact.

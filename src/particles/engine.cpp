@@ -111,16 +111,18 @@ void Engine::add(const std::vector<Seed>& seeds) {
     store.reserve(store.owned);
     Motion& motion = store.motion[p];
     motion = Motion{};
+    Rotation& rotation = store.rotation[p];
+    rotation = Rotation{};
     for (int d = 0; d < 3; ++d) {
       motion.position[d] = position[d];
       motion.velocity[d] = seed.velocity[d];
-      motion.spin[d] = seed.spin[d];
+      rotation.spin[d] = seed.spin[d];
     }
-    if (plane_) motion.velocity[2] = motion.spin[0] = motion.spin[1] = 0;
+    if (plane_) motion.velocity[2] = rotation.spin[0] = rotation.spin[1] = 0;
     motion.radius = seed.radius;
     const double mass = *materials[seed.material].density * 4.0 / 3.0 * std::numbers::pi * std::pow(seed.radius, 3);
     motion.inverse_mass = 1 / mass;
-    motion.material = seed.material;
+    rotation.material = seed.material;
     store.present[p] = store.previous[p] = Load{};
     store.id.push_back(next_id_ + static_cast<std::int64_t>(k));
     store.cell.push_back(places[k].cell);
@@ -130,13 +132,13 @@ void Engine::add(const std::vector<Seed>& seeds) {
     wall_memory_.append(nullptr, 0);
     impulses.added += mass * vec3(motion.velocity);
     impulses.added_mass += mass;
-    if (energy_) energy_->came(motion);
+    if (energy_) energy_->came(store.body(p));
   }
   next_id_ += static_cast<std::int64_t>(seeds.size());
   total += static_cast<long long>(seeds.size());
 
   for (int p = 0; p < store.owned; ++p) {
-    double& radius = smallest_.radius[static_cast<int>(store.motion[p].material)];
+    double& radius = smallest_.radius[static_cast<int>(store.rotation[p].material)];
     radius = std::min(radius, store.motion[p].radius);
     fastest = std::max(fastest, vec3(store.motion[p].velocity).norm());
   }
@@ -185,6 +187,7 @@ void Engine::sum_up() {
 Integration Engine::pass(double h) {
   Integration step;
   step.motion = store.motion.data();
+  step.rotation = store.rotation.data();
   step.present = store.present.data();
   step.previous = store.previous.data();
   if (few_loaded_ && few_loaded_before_) {

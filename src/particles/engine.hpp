@@ -139,7 +139,7 @@ class Engine {
   /// Sums that change only when particles come or go.
   void sum_up();
   Integration pass(double h);
-  std::string describe(const Motion& motion, std::int64_t id) const;
+  std::string describe(const Body& motion, std::int64_t id) const;
   /// The same with what the particle touches and the wall it touched last.
   std::string describe(int p) const;
   std::string describe(const Gone& gone) const;

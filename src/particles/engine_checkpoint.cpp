@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <unordered_map>
 
 #include "base/checkpoint_file.hpp"
@@ -15,7 +16,8 @@ namespace {
 /// FluidAction as numbers; every member but nothing else.
 constexpr int action_width = sizeof(FluidAction) / sizeof(double);
 static_assert(sizeof(FluidAction) == action_width * sizeof(double) && std::is_trivially_copyable_v<FluidAction>);
-constexpr int motion_width = sizeof(Motion) / sizeof(double), load_width = sizeof(Load) / sizeof(double);
+constexpr int motion_width = (sizeof(Motion) + sizeof(Rotation)) / sizeof(double);
+constexpr int load_width = sizeof(Load) / sizeof(double);
 
 template <class T>
 std::vector<double> as_numbers(const T* from, int count) {
@@ -56,7 +58,13 @@ void Engine::save(CheckpointWriter& to) {
   if (!detached_) detach();
   memory_.complete(store.id);  // other ranks may read it
   const int n = store.owned;
-  to.add("particle_motion", motion_width, as_numbers(store.motion.data(), n));
+  std::vector<double> motion(static_cast<std::size_t>(n) * motion_width);
+  for (int p = 0; p < n; ++p) {
+    double* row = &motion[static_cast<std::size_t>(p) * motion_width];
+    std::memcpy(row, &store.motion[p], sizeof(Motion));
+    std::memcpy(row + 8, &store.rotation[p], sizeof(Rotation));
+  }
+  to.add("particle_motion", motion_width, std::move(motion));
   to.add("particle_load", load_width, as_numbers(store.present.data(), n));
   if (mpi_any(store.acted_on)) {
     store.want_actions();
@@ -139,7 +147,11 @@ void Engine::load(const CheckpointReader& from, bool elsewhere) {
   store.ghosts = 0;
   store.reserve(n);
   const auto motion = from.numbers("particle_motion", first, n), load = from.numbers("particle_load", first, n);
-  std::copy(motion.begin(), motion.end(), reinterpret_cast<double*>(store.motion.data()));
+  for (int p = 0; p < n; ++p) {
+    const double* row = &motion[static_cast<std::size_t>(p) * motion_width];
+    std::memcpy(&store.motion[p], row, sizeof(Motion));
+    std::memcpy(&store.rotation[p], row + 8, sizeof(Rotation));
+  }
   std::copy(load.begin(), load.end(), reinterpret_cast<double*>(store.present.data()));
   store.columns.reserve(n);
   store.action.assign(store.acted_on ? n : 0, {});

@@ -24,7 +24,7 @@ void Engine::stop_if_any(const std::string& text) const {
   throw RunError(told);
 }
 
-std::string Engine::describe(const Motion& motion, std::int64_t id) const {
+std::string Engine::describe(const Body& motion, std::int64_t id) const {
   return fmt::format(
       "particle {} at ({:.6g}, {:.6g}, {:.6g}) m, velocity ({:.6g}, {:.6g}, {:.6g}) m/s, spin ({:.6g}, {:.6g}, {:.6g}) "
       "rad/s, radius "
@@ -52,7 +52,7 @@ std::string Engine::describe(int p) const {
   }
   for (const WallPoint& point : wall_contacts.points())
     if (!detached_ && point.particle == p) name("the wall " + walls_.name(point.boundary));
-  return describe(store.motion[p], store.id[p]) + partners +
+  return describe(store.body(p), store.id[p]) + partners +
          (last_wall_ >= 0 && p < store.owned ? last_wall(*store.columns.row(last_wall_, p)) : "");
 }
 
@@ -62,7 +62,7 @@ std::string Engine::describe(const Gone& gone) const {
     for (int k = memory_.rows.start[p]; k < memory_.rows.start[p + 1]; ++k)
       if (std::bit_cast<std::int64_t>(memory_.rows.row(k)[0]) == gone.id)
         partners += fmt::format("{}{}", partners.empty() ? ", touched " : ", ", store.id[p]);
-  return describe(gone.motion, gone.id) + partners +
+  return describe(gone.body, gone.id) + partners +
          (last_wall_ >= 0 ? last_wall(gone.columns[store.columns.offset(last_wall_)]) : "");
 }
 
@@ -89,7 +89,7 @@ std::string Engine::describe_deepest(int contact) const {
 void Engine::take_sizes() {
   ParticleSizes sizes = laws_.sizes();  // of all there ever were, so that the reach does not shrink
   for (int p = 0; p < store.owned; ++p) {
-    const int material = static_cast<int>(store.motion[p].material);
+    const int material = static_cast<int>(store.rotation[p].material);
     sizes.smallest[material] = std::min(sizes.smallest[material], store.motion[p].radius);
     sizes.largest[material] = std::max(sizes.largest[material], store.motion[p].radius);
   }
@@ -109,7 +109,7 @@ std::string Engine::find_bad() const {
   for (int p = 0; p < store.owned; ++p) {
     const Motion& motion = store.motion[p];
     double sum = 0;
-    for (int d = 0; d < 3; ++d) sum += motion.position[d] + motion.velocity[d] + motion.spin[d];
+    for (int d = 0; d < 3; ++d) sum += motion.position[d] + motion.velocity[d] + store.rotation[p].spin[d];
     if (!std::isfinite(sum)) return "not a number: " + describe(p);
   }
   return "a particle's position is not a number";

@@ -37,6 +37,7 @@ void Engine::evaluate(double time, double dt) {
 
   PairSweep sweep;
   sweep.motion = store.motion.data();
+  sweep.rotation = store.rotation.data();
   sweep.load = store.present.data();
   sweep.pairs = contacts.pairs();
   sweep.laws = setup;
@@ -56,6 +57,7 @@ void Engine::evaluate(double time, double dt) {
   std::fill(wall_torque_sum_.begin(), wall_torque_sum_.end(), 0.0);
   WallSweep walls;
   walls.motion = store.motion.data();
+  walls.rotation = store.rotation.data();
   walls.load = store.present.data();
   walls.laws = setup;
   walls.dt = dt;

@@ -18,7 +18,8 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   if (within_step) adapt_skin();
   if (fluid_ && within_step) collect_fluid();  // between steps all is collected, and new ones have no drag yet
   std::string fast;
-  if (within_step)
+  // None did where the longest way of all in this step is below the least radius.
+  if (within_step && strode_ > *std::min_element(smallest_.radius.begin(), smallest_.radius.end()))
     for (int p = 0; p < store.owned && fast.empty(); ++p)
       if (h * h * vec3(store.motion[p].velocity).squaredNorm() > store.motion[p].radius * store.motion[p].radius)
         fast = fmt::format("a particle moves more than its radius in a step of {:g} s (-particles_fast): {}", h,
@@ -107,8 +108,7 @@ CellOrder Engine::sort_along(const CellGrid& grid, Aligned<Load>& carried) {
 /// distances from where they were made are looked at.
 bool Engine::out_of_lists() {
   if (travel_ <= 0.5 * skin_) return false;
-  double largest = 0;
-  for (int p = 0; p < store.owned; ++p) largest = std::max(largest, store.way(p));
+  double largest = store.longest_way();
   if (mpi_size() > 1) MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator_);
   travel_ = std::min(travel_, largest);
   return travel_ > 0.45 * skin_;

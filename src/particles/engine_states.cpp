@@ -14,7 +14,7 @@ void Engine::settle(const SettleOptions& options) {
   if (options.time > 0 && total > 0) come_to_rest(options);
   if (!options_.fixed) return;
   for (int p = 0; p < store.owned; ++p)  // what is held has no velocity of a file or of settling to give up later
-    for (int d = 0; d < 3; ++d) store.motion[p].velocity[d] = store.motion[p].spin[d] = 0;
+    for (int d = 0; d < 3; ++d) store.motion[p].velocity[d] = store.rotation[p].spin[d] = 0;
 }
 
 void Engine::come_to_rest(const SettleOptions& options) {
@@ -57,7 +57,7 @@ ParticleStep Engine::hold(double time, double dt) {
     impulses.kicks -= mass * vec3(motion.velocity);  // a kick on a held particle moves nothing
     action.held = 1;
     for (int d = 0; d < 3; ++d) {
-      motion.velocity[d] = motion.spin[d] = 0;
+      motion.velocity[d] = store.rotation[p].spin[d] = 0;
       const double drag = action.exchange * action.velocity[d] * dt, force = action.force[d] * dt;
       const double weight = mass * gravity_[d] * dt;
       action.impulse[d] += drag;
@@ -94,7 +94,7 @@ std::shared_ptr<const Particles::Snapshot> Engine::snapshot(bool to_repeat) cons
   const int n = store.owned;
   return std::make_shared<const Particles::Snapshot>(
       Particles::Snapshot{n,
-                          PackedMotions(store.motion.data(), n),
+                          PackedMotions(store.motion.data(), store.rotation.data(), n),
                           PackedLoads(store.present.data(), to_repeat ? n : 0),
                           PackedIds(n, [this](std::size_t p) { return store.id[p]; }),
                           store.cell,
@@ -121,7 +121,7 @@ void Engine::restore(const Particles::Snapshot& saved) {
   store.owned = saved.owned;
   store.ghosts = 0;
   store.reserve(saved.owned);
-  saved.motion.unpack(store.motion.data());
+  saved.motion.unpack(store.motion.data(), store.rotation.data());
   saved.present.unpack(store.present.data());
   if (saved.present.empty()) std::fill_n(store.present.data(), saved.owned, Load{});  // start() evaluates them anew
   store.id.resize(saved.owned);

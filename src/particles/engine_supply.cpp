@@ -66,9 +66,9 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
   for (const Gone& one : gone) {
     Departed leaving;
     leaving.id = one.id;
-    leaving.position = vec3(one.motion.position);
-    leaving.velocity = vec3(one.motion.velocity);
-    leaving.mass = 1 / one.motion.inverse_mass;
+    leaving.position = vec3(one.body.position);
+    leaving.velocity = vec3(one.body.velocity);
+    leaving.mass = 1 / one.body.inverse_mass;
     leaving.cell = one.cell;
     leaving.boundary = one.boundary;
     leaving.action = one.action;
@@ -76,14 +76,14 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
     leaving.acted = acted_;
     if (within_step && options_.late_share() > 0) {
       // It ends the step without contacts at its new place: the corrector for a force that has gone to zero.
-      const double share = 1 / (1 + one.action.added_mass * one.motion.inverse_mass);
-      const double z = one.action.exchange * one.motion.inverse_mass * share * h;
+      const double share = 1 / (1 + one.action.added_mass * one.body.inverse_mass);
+      const double z = one.action.exchange * one.body.inverse_mass * share * h;
       const double phi = z > 0 ? -std::expm1(-z) * h / z : h;
       const double corrector = brownian_.overdamped() && z > 0 ? h / z
                                : z > 1e-2                      ? (1 - phi / h) * h / z
                                                                : h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z / 120)));
       for (int d = 0; d < (plane_ ? 2 : 3); ++d) {
-        const double slower = corrector * share * one.motion.inverse_mass * one.carried.force[d];
+        const double slower = corrector * share * one.body.inverse_mass * one.carried.force[d];
         leaving.velocity[d] -= slower;
         const double drag = -(corrector * share - 0.5 * h) * one.carried.force[d];
         leaving.action.impulse[d] += drag;
@@ -93,8 +93,8 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
     }
     impulses.removed -= leaving.mass * leaving.velocity;
     impulses.removed_mass += leaving.mass;
-    if (energy_ && within_step) energy_->went_from(one.motion, one.columns, store.columns);
-    if (energy_ && !within_step) energy_->went(one.motion);
+    if (energy_ && within_step) energy_->went_from(one.body, one.columns, store.columns);
+    if (energy_ && !within_step) energy_->went(one.body);
     departed.push_back(leaving);
     const bool open = one.boundary >= 0 && walls_.role(one.boundary) == BoundaryRole::open;
     if (one.boundary < 0 || open || walls_.role(one.boundary) == BoundaryRole::wall) {
@@ -132,7 +132,7 @@ void Engine::take_out(double time) {
       gone.action.work = store.action[p].work;  // of the step before; the fluid is still to be charged
     impulses.removed -= gone.mass * gone.velocity;
     impulses.removed_mass += gone.mass;
-    if (energy_) energy_->went(motion);
+    if (energy_) energy_->went(store.body(p));
     leaving.push_back(gone);
   }
   const long long count = mpi_sum(static_cast<long long>(leaving.size()));

@@ -31,6 +31,7 @@ std::string field_table(Options& options, const LawTableOptions& chosen) {
     seed.radius = radius;
     Motion& motion = store.motion[p];
     motion = Motion{};
+    store.rotation[p] = Rotation{};
     motion.radius = radius;
     motion.inverse_mass = 1 / (*materials[0].density * 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3));
     store.columns.start(p, seed);

@@ -133,12 +133,13 @@ void Halo::fetch(Store& store) {
   store.reserve(store.all());
   store.columns.clear(store.owned, store.all());
   store.id.resize(store.all());
-  const int width = 13 + store.columns.ghost_width(true);  // a Motion, the id and the columns
+  const int width = 13 + store.columns.ghost_width(true);  // motion, rotation, id and columns
   send_buffer_.resize(send_index_.size() * width);
   receive_buffer_.resize(static_cast<std::size_t>(store.ghosts) * width);
   for (std::size_t k = 0; k < send_index_.size(); ++k) {
     double* record = &send_buffer_[k * width];
     __builtin_memcpy(record, &store.motion[send_index_[k]], sizeof(Motion));
+    __builtin_memcpy(record + 8, &store.rotation[send_index_[k]], sizeof(Rotation));
     __builtin_memcpy(record + 12, &store.id[send_index_[k]], sizeof(double));
     store.columns.gather_ghost(send_index_[k], true, record + 13);
   }
@@ -155,6 +156,7 @@ void Halo::fetch(Store& store) {
   for (int k = 0; k < store.ghosts; ++k) {
     const double* record = &receive_buffer_[static_cast<std::size_t>(k) * width];
     __builtin_memcpy(&store.motion[store.owned + k], record, sizeof(Motion));
+    __builtin_memcpy(&store.rotation[store.owned + k], record + 8, sizeof(Rotation));
     __builtin_memcpy(&store.id[store.owned + k], record + 12, sizeof(double));
     store.columns.scatter_ghost(store.owned + k, true, record + 13);
     store.present[store.owned + k] = store.previous[store.owned + k] = Load{};
@@ -178,7 +180,7 @@ void Halo::forward(Store& store) {
       for (int d = 0; d < 3; ++d) {
         record[d] = motion.position[d];
         record[3 + d] = motion.velocity[d];
-        record[6 + d] = motion.spin[d];
+        record[6 + d] = store.rotation[send_index_[k]].spin[d];
       }
       store.columns.gather_ghost(send_index_[k], false, record + motion_width_);
     }
@@ -193,7 +195,7 @@ void Halo::forward(Store& store) {
     for (int d = 0; d < 3; ++d) {
       motion.position[d] = record[d];
       motion.velocity[d] = record[3 + d];
-      motion.spin[d] = record[6 + d];
+      store.rotation[store.owned + k].spin[d] = record[6 + d];
     }
     store.columns.scatter_ghost(store.owned + k, false, record + motion_width_);
     store.present[store.owned + k] = Load{};  // sums up forces that their owner computes too

@@ -30,31 +30,68 @@ SILT_INLINE std::uint64_t loaded_in_block(const Integration& step, int first, in
   return bits;
 }
 
+/// How long each of four particles moves freely, by the bits of those that bear a load: they take part with a step of
+/// no time, for a branch would be foreseen wrongly for every other one of them, which costs more than all four.
+struct FreeSteps {
+  double dt[16][4], second[16][4];
+  SILT_INLINE explicit FreeSteps(const Integration& step) {
+    for (int loaded = 0; loaded < 16; ++loaded)
+      for (int k = 0; k < 4; ++k) {
+        dt[loaded][k] = loaded >> k & 1 ? 0 : step.dt;
+        second[loaded][k] = loaded >> k & 1 ? 0 : step.second;
+      }
+  }
+};
+
+/// The squared lengths of four vectors, whose fourth entries are 0.
+SILT_INLINE Quad square_lengths(Quad a, Quad b, Quad c, Quad d) {
+  a *= a, b *= b, c *= c, d *= d;
+  const Quad ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Quad cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+}
+
+/// What a pass finds of the ways of the particles in this step.
+struct Ways {
+  Quad largest{}, sum{};
+  SILT_INLINE void add(Quad squares) {
+    largest = largest > squares ? largest : squares;
+    sum += squares;
+  }
+};
+
 /// The drift of those particles of a block that nothing but gravity acts on, with the bits of the general one; their
-/// spins stay. The others take part with a step of no time: a branch would be foreseen wrongly for every other one of
-/// them, which costs more than the whole block.
-SILT_INLINE void move_freely(Integration& step, int first, int count, std::uint64_t loaded, double& largest,
-                             double& check) {
-  const double h = step.dt, second = step.second;
+/// spins stay.
+template <bool falls>
+SILT_INLINE void move_freely(Integration& step, const FreeSteps& steps, int first, int count, std::uint64_t loaded,
+                             Ways& ways) {
   const Quad move = quad(step.move), acceleration = quad(step.gravity) * move;
-  const bool falls = acceleration[0] != 0 || acceleration[1] != 0 || acceleration[2] != 0;
-  for (int k = 0; k < count; ++k) {
-    Motion& motion = step.motion[first + k];
-    const double here = loaded >> k & 1 ? 0 : 1;
+  const auto move_one = [&](Motion& motion, double dt, double second) {
     const Quad velocity = quad(motion.velocity), before = quad(motion.position);
-    const Quad position = before + (every(here * h) * move) * velocity + every(here * second) * acceleration;
+    Quad position = before + (every(dt) * move) * velocity;
+    if constexpr (falls) {
+      position += every(second) * acceleration;
+      *reinterpret_cast<Quad*>(motion.velocity) = velocity + every(dt) * acceleration;
+    }
     *reinterpret_cast<Quad*>(motion.position) = position;
-    if (falls) *reinterpret_cast<Quad*>(motion.velocity) = velocity + every(here * h) * acceleration;
-    const Quad moved = position - before;
-    const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
-    largest = largest > square ? largest : square;
-    check += square;
+    return position - before;
+  };
+  for (int k = 0; k < count; k += 4) {
+    Motion* motion = step.motion + first + k;
+    const unsigned bits = loaded >> k & 15;
+    const double *dt = steps.dt[bits], *second = steps.second[bits];
+    Quad moved[4] = {};
+    if (k + 4 <= count)
+      for (int q = 0; q < 4; ++q) moved[q] = move_one(motion[q], dt[q], second[q]);
+    else
+      for (int q = 0; k + q < count; ++q) moved[q] = move_one(motion[q], dt[q], second[q]);
+    ways.add(square_lengths(moved[0], moved[1], moved[2], moved[3]));
   }
   if (!step.orientation) return;
   for (int k = 0; k < count; ++k)
     if (!(loaded >> k & 1)) {
-      const Quad spin = quad(step.motion[first + k].spin);
-      turn_by(step.orientation[first + k], h * spin[0], h * spin[1], h * spin[2]);
+      const Quad spin = quad(step.rotation[first + k].spin);
+      turn_by(step.orientation[first + k], step.dt * spin[0], step.dt * spin[1], step.dt * spin[2]);
     }
 }
 
@@ -62,10 +99,10 @@ template <bool correct, bool drift, bool fluid, bool turning, bool sparse>
 void integrate_all(Integration& step) {
   const double h = step.dt;
   const Quad move = quad(step.move), turn = quad(step.turn), gravity = quad(step.gravity);
-  double largest = 0, check = 0;
+  Ways ways;
   const auto integrate_one = [&](int p) {
     Motion& motion = step.motion[p];
-    Quad velocity = quad(motion.velocity), spin = quad(motion.spin);
+    Quad velocity = quad(motion.velocity), spin = quad(step.rotation[p].spin);
     const double inverse_mass = motion.inverse_mass;
     const double inverse_inertia = 2.5 * inverse_mass / (motion.radius * motion.radius);
     const Quad force = quad(step.present[p].force), torque = quad(step.present[p].torque);
@@ -131,18 +168,19 @@ void integrate_all(Integration& step) {
       }
       const Quad moved = position - quad(motion.position);
       *reinterpret_cast<Quad*>(motion.position) = position;
-      const double square = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
-      largest = largest > square ? largest : square;
-      check += square;
+      ways.add(square_lengths(moved, Quad{}, Quad{}, Quad{}));
       *reinterpret_cast<Quad*>(step.previous[p].force) = Quad{};
       *reinterpret_cast<Quad*>(step.previous[p].torque) = Quad{};
     }
     *reinterpret_cast<Quad*>(motion.velocity) = velocity;
-    *reinterpret_cast<Quad*>(motion.spin) = spin;
+    *reinterpret_cast<Quad*>(step.rotation[p].spin) = spin;
     if constexpr (fluid) *reinterpret_cast<Quad*>(step.drag[p].impulse) = impulse;
   };
   if constexpr (sparse) {
     constexpr int block = 64;
+    const FreeSteps steps(step);
+    const Quad falling = gravity * move;
+    const bool falls = falling[0] != 0 || falling[1] != 0 || falling[2] != 0;
     const auto size = [&](int first) { return step.count - first < block ? step.count - first : block; };
     std::uint64_t loaded = step.count > 0 ? loaded_in_block(step, 0, size(0)) : 0;
     for (int first = 0; first < step.count; first += block) {
@@ -152,16 +190,22 @@ void integrate_all(Integration& step) {
       for (std::uint64_t left = coming; left; left &= left - 1) {
         __builtin_prefetch(&step.present[next + __builtin_ctzll(left)], 1);
         __builtin_prefetch(&step.previous[next + __builtin_ctzll(left)], 1);
+        __builtin_prefetch(&step.rotation[next + __builtin_ctzll(left)], 1);
       }
-      if constexpr (drift) move_freely(step, first, size(first), loaded, largest, check);
+      if constexpr (drift)
+        falls ? move_freely<true>(step, steps, first, size(first), loaded, ways)
+              : move_freely<false>(step, steps, first, size(first), loaded, ways);
       for (std::uint64_t left = loaded; left; left &= left - 1) integrate_one(first + __builtin_ctzll(left));
       loaded = coming;
     }
   } else {
     for (int p = 0; p < step.count; ++p) integrate_one(p);
   }
-  step.largest_square = largest;
-  step.check = check;
+  step.largest_square = step.check = 0;
+  for (int k = 0; k < 4; ++k) {
+    step.largest_square = step.largest_square > ways.largest[k] ? step.largest_square : ways.largest[k];
+    step.check += ways.sum[k];
+  }
 }
 
 template <bool fluid, bool turning, bool sparse>

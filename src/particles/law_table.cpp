@@ -24,6 +24,7 @@ class LedPair {
     store_.id = {0, 1};
     for (int p = 0; p < 2; ++p) {
       store_.motion[p] = Motion{};
+      store_.rotation[p] = Rotation{};
       store_.motion[p].radius = radius;
       store_.motion[p].inverse_mass = 1 / mass;
     }
@@ -36,13 +37,14 @@ class LedPair {
   /// Load on the one particle after a step: it is above the other by the gap, nears it with the speed `approach`, slips
   /// along x and turns with half the relative spin.
   const Load& at(double gap, double approach, double slip, const Vec3& spin, double dt) {
-    Motion &a = store_.motion[0], &b = store_.motion[1];
+    Motion& a = store_.motion[0];
     vec3(a.position) = Vec3(0, 0, 2 * radius_ + gap);
     vec3(a.velocity) = Vec3(slip, 0, -approach);
-    vec3(a.spin) = 0.5 * spin, vec3(b.spin) = -0.5 * spin;
+    vec3(store_.rotation[0].spin) = 0.5 * spin, vec3(store_.rotation[1].spin) = -0.5 * spin;
     store_.present[0] = store_.present[1] = Load{};
     PairSweep sweep;
     sweep.motion = store_.motion.data();
+    sweep.rotation = store_.rotation.data();
     sweep.load = store_.present.data();
     sweep.pairs = lists_.pairs();
     sweep.laws = laws_.setup();

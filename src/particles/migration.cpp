@@ -12,7 +12,7 @@ namespace silt {
 /// memory follow it.
 struct Migration::Packet {
   std::int64_t id;
-  Motion motion;
+  Body body;
   Load carried;
   int cell, actions, contact_rows, wall_rows;
 };
@@ -108,7 +108,7 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
   std::vector<double> row(store.columns.width());
   for (const auto& [p, place] : away_) {
     Traveller traveller{{}, place};
-    const Packet packet{store.id[p],    store.motion[p],  carried[p],   store.cell[p],
+    const Packet packet{store.id[p],    store.body(p),    carried[p],   store.cell[p],
                         store.acted_on, contacts.rows(p), walls.rows(p)};
     put(traveller.bytes, &packet, 1);
     if (store.acted_on) put(traveller.bytes, &store.action[p], 1);
@@ -149,12 +149,12 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
           head + sizeof(double) * (row.size() + static_cast<std::size_t>(packet.contact_rows) * contacts.width +
                                    static_cast<std::size_t>(packet.wall_rows) * walls.width);
       // What settle() said is final, also where a tie would send the particle on.
-      const Place place = settled ? locator_.held(vec3(packet.motion.position)) : locator_.find(packet.motion.position);
+      const Place place = settled ? locator_.held(vec3(packet.body.position)) : locator_.find(packet.body.position);
       if (place.inside()) {
-        wrap(locator_, place, packet.motion);
+        wrap(locator_, place, packet.body);
         const int p = store.owned++;
         store.reserve(store.owned);
-        store.motion[p] = packet.motion;
+        store.set_body(p, packet.body);
         store.present[p] = store.previous[p] = Load{};
         carried[p] = packet.carried;
         store.id.push_back(packet.id);
@@ -183,7 +183,7 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
   std::vector<Gone> gone;
   if (!mpi_any(!lost_sight.empty())) return gone;
   std::vector<Vec3> points;
-  for (const auto& traveller : lost_sight) points.push_back(vec3(traveller.packet().motion.position));
+  for (const auto& traveller : lost_sight) points.push_back(vec3(traveller.packet().body.position));
   const std::vector<Place> places = locator_.settle(points);
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (places[k].state == Place::State::boundary) {
@@ -193,7 +193,7 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
       if (packet.actions) std::memcpy(&action, lost_sight[k].bytes.data() + sizeof packet, sizeof action);
       take(lost_sight[k].bytes.data() + sizeof packet + packet.actions * sizeof action, row);
       const int boundary = first.state == Place::State::boundary ? first.boundary : places[k].boundary;
-      gone.push_back({packet.id, packet.motion, packet.carried, action, packet.cell, boundary, row});
+      gone.push_back({packet.id, packet.body, packet.carried, action, packet.cell, boundary, row});
     } else {
       const int rank = places[k].inside() ? mpi_rank() : places[k].rank;
       put(outgoing[rank], lost_sight[k].bytes.data(), lost_sight[k].bytes.size());

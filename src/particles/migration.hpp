@@ -12,7 +12,7 @@ namespace silt {
 /// A particle that is in no cell of the mesh any more.
 struct Gone {
   std::int64_t id;
-  Motion motion;
+  Body body;
   Load carried;  ///< the contact load it had (Store::reorder)
   FluidAction action;
   int cell;                     ///< last local cell

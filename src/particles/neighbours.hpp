@@ -68,7 +68,8 @@ struct PairReach {
   double enter_gap = 0, leave_gap = 0, skin = 0, memory_gap = 0;
 };
 
-/// Fills the lists, which are empty, with all pairs of two owned particles, or of one and a ghost, nearer than leave_gap
+/// Fills the lists, which are empty, with all pairs of two owned particles, or of one and a ghost, nearer than
+/// leave_gap
 /// + skin. `own`: the bins of the owned particles.
 void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const Periods& periods,
                 const PairReach& pair_reach, const ContactMemory& memory, const Kernels& kernels, ContactLists& lists);

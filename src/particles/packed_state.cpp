@@ -5,7 +5,7 @@
 
 namespace silt {
 
-PackedMotions::PackedMotions(const Motion* motion, int count) {
+PackedMotions::PackedMotions(const Motion* motion, const Rotation* rotation, int count) {
   const auto hash = [](const Kind& kind) {
     return std::bit_cast<std::uint64_t>(kind.radius) ^ std::bit_cast<std::uint64_t>(kind.inverse_mass) * 31 ^
            std::bit_cast<std::uint64_t>(kind.material) * 17;
@@ -15,12 +15,12 @@ PackedMotions::PackedMotions(const Motion* motion, int count) {
   const auto most = static_cast<std::size_t>(std::min(count / 16 + 16, 65536));
   moving_.resize(9 * static_cast<std::size_t>(count));
   kind_.resize(count);
-  const auto kind_of = [&](int p) { return Kind{motion[p].radius, motion[p].inverse_mass, motion[p].material}; };
+  const auto kind_of = [&](int p) { return Kind{motion[p].radius, motion[p].inverse_mass, rotation[p].material}; };
   bool few = true;
   for (int p = 0; p < count; ++p) {
     const Motion& from = motion[p];
     double* to = &moving_[9 * static_cast<std::size_t>(p)];
-    for (int d = 0; d < 3; ++d) to[d] = from.position[d], to[3 + d] = from.velocity[d], to[6 + d] = from.spin[d];
+    for (int d = 0; d < 3; ++d) to[d] = from.position[d], to[3 + d] = from.velocity[d], to[6 + d] = rotation[p].spin[d];
     if (!few) continue;
     const Kind kind = kind_of(p);
     if (p > 0 && kinds_[kind_[p - 1]] == kind) {
@@ -39,13 +39,13 @@ PackedMotions::PackedMotions(const Motion* motion, int count) {
   for (int p = 0; p < count; ++p) kinds_[p] = kind_of(p);
 }
 
-void PackedMotions::unpack(Motion* motion) const {
+void PackedMotions::unpack(Motion* motion, Rotation* rotation) const {
   const std::size_t count = moving_.size() / 9;
   for (std::size_t p = 0; p < count; ++p) {
     const double* from = &moving_[9 * p];
     const Kind& kind = kinds_[kind_.empty() ? p : kind_[p]];
-    motion[p] = {{from[0], from[1], from[2]}, kind.radius,  {from[3], from[4], from[5]}, kind.inverse_mass,
-                 {from[6], from[7], from[8]}, kind.material};
+    motion[p] = {{from[0], from[1], from[2]}, kind.radius, {from[3], from[4], from[5]}, kind.inverse_mass};
+    rotation[p] = {{from[6], from[7], from[8]}, kind.material};
   }
 }
 

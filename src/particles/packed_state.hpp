@@ -51,8 +51,8 @@ using PackedIds = Narrowed<std::uint32_t, std::int64_t>;
 class PackedMotions {
  public:
   PackedMotions() = default;
-  PackedMotions(const Motion* motion, int count);
-  void unpack(Motion* motion) const;
+  PackedMotions(const Motion* motion, const Rotation* rotation, int count);
+  void unpack(Motion* motion, Rotation* rotation) const;
   std::size_t bytes() const;
 
  private:

@@ -37,7 +37,7 @@ long long Particles::total() const { return impl_->total; }
 std::int64_t Particles::id(int i) const { return impl_->store.id[i]; }
 Map<const Vec3> Particles::position(int i) const { return vec3(std::as_const(impl_->store).motion[i].position); }
 Map<const Vec3> Particles::velocity(int i) const { return vec3(std::as_const(impl_->store).motion[i].velocity); }
-Map<const Vec3> Particles::spin(int i) const { return vec3(std::as_const(impl_->store).motion[i].spin); }
+Map<const Vec3> Particles::spin(int i) const { return vec3(std::as_const(impl_->store).rotation[i].spin); }
 double Particles::radius(int i) const { return impl_->store.motion[i].radius; }
 double Particles::mass(int i) const { return 1 / impl_->store.motion[i].inverse_mass; }
 double Particles::volume(int i) const {
@@ -47,8 +47,8 @@ double Particles::volume(int i) const {
 Columns& Particles::columns() { return impl_->store.columns; }
 const Columns& Particles::columns() const { return impl_->store.columns; }
 bool Particles::has_heat() const { return impl_->heat() != nullptr; }
-double Particles::heat_capacity(int i) const { return impl_->heat()->capacity(impl_->store.motion[i]); }
-int Particles::material(int i) const { return static_cast<int>(impl_->store.motion[i].material); }
+double Particles::heat_capacity(int i) const { return impl_->heat()->capacity(impl_->store, i); }
+int Particles::material(int i) const { return static_cast<int>(impl_->store.rotation[i].material); }
 int Particles::cell(int i) const { return impl_->store.cell[i]; }
 FluidAction& Particles::fluid_action(int i) {
   impl_->store.want_actions();

@@ -10,6 +10,7 @@ namespace silt {
 void Store::reserve(int count) {
   const auto n = static_cast<std::size_t>(count) + 2;
   motion.reserve(n);
+  rotation.reserve(n);
   present.reserve(n);
   previous.reserve(n);
   columns.reserve(count);
@@ -25,7 +26,7 @@ void Store::place_padding() {
     motion_k.position[k] += 1;
     motion_k.radius = 1e-3;
     motion_k.inverse_mass = 1;
-    motion_k.material = 0;
+    rotation[padding() + k] = Rotation{};
     present[padding() + k] = previous[padding() + k] = Load{};
   }
 }
@@ -41,7 +42,7 @@ void Store::note_origins(const Vec3& lower, const Vec3& upper) {
 }
 
 std::vector<std::pair<std::string, std::size_t>> Store::bytes() const {
-  return {{"motion", motion.capacity() * sizeof(Motion)},
+  return {{"motion", motion.capacity() * sizeof(Motion) + rotation.capacity() * sizeof(Rotation)},
           {"loads", (present.capacity() + previous.capacity()) * sizeof(Load)},
           {"fluid", action.capacity() * sizeof(FluidAction) + drag.capacity() * sizeof(DragStep) +
                         turning.capacity() * sizeof(TurnStep)},
@@ -55,6 +56,7 @@ void Store::reorder(const std::vector<int>& order, Aligned<Load>& carried) {
   owned = static_cast<int>(order.size());
   if (rearrange.nothing_moves()) return;
   rearrange.apply(motion.data());
+  rearrange.apply(rotation.data());
   rearrange.apply(carried.data());
   rearrange.apply(id.data());
   rearrange.apply(cell.data());

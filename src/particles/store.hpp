@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -16,6 +17,7 @@ namespace silt {
 struct Store {
   int owned = 0, ghosts = 0;
   Aligned<Motion> motion;        ///< [owned + ghosts + 2]
+  Aligned<Rotation> rotation;    ///< [owned + ghosts + 2]
   Aligned<Load> present;         ///< [owned + ghosts + 2] contact forces being summed up, or at the present positions
   Aligned<Load> previous;        ///< contact forces of the step before
   Aligned<DragStep> drag;        ///< [owned] only while a fluid acts
@@ -28,6 +30,8 @@ struct Store {
 
   int all() const { return owned + ghosts; }
   int padding() const { return owned + ghosts; }
+  Body body(int p) const { return {motion[p], rotation[p]}; }
+  void set_body(int p, const Body& body) { motion[p] = body, rotation[p] = body; }
   /// Makes room for `count` particles and the padding.
   void reserve(int count);
   /// Writes the padding particles behind the ghosts.
@@ -41,13 +45,12 @@ struct Store {
   /// Remembers where the particles are, all between `lower` and `upper`, for way().
   void note_origins(const Vec3& lower, const Vec3& upper);
   /// An upper bound of the distance from there, not far above it. m
-  double way(int p) const {
+  double way(int p) const { return std::sqrt(square_of_way(p)) + rounding_; }
+  /// The largest of them; 0 without particles.
+  double longest_way() const {
     double square = 0;
-    for (int d = 0; d < 3; ++d) {
-      const double moved = motion[p].position[d] - corner_[d] - origin_[3 * static_cast<std::size_t>(p) + d];
-      square += moved * moved;
-    }
-    return std::sqrt(square) + rounding_;
+    for (int p = 0; p < owned; ++p) square = std::max(square, square_of_way(p));
+    return owned > 0 ? std::sqrt(square) + rounding_ : 0;
   }
   /// What the arrays take, by name. B
   std::vector<std::pair<std::string, std::size_t>> bytes() const;
@@ -56,6 +59,15 @@ struct Store {
   void reorder(const std::vector<int>& order, Aligned<Load>& carried);
 
  private:
+  double square_of_way(int p) const {
+    double square = 0;
+    for (int d = 0; d < 3; ++d) {
+      const double moved = motion[p].position[d] - corner_[d] - origin_[3 * static_cast<std::size_t>(p) + d];
+      square += moved * moved;
+    }
+    return square;
+  }
+
   std::vector<float> origin_;  ///< [owned][3] m, from corner_
   double corner_[3] = {0, 0, 0}, rounding_ = 0;
 };

@@ -39,10 +39,10 @@ DM SwarmStore::refresh(const Mesh& mesh, const Store& store) {
   const int n = store.owned;
   SILT_PETSC(DMSwarmSetLocalSizes(swarm_, n, 16));
   fill<long>(swarm_, "id", n, 1, [&](int p, int) { return store.id[p]; });
-  fill<PetscInt>(swarm_, "material", n, 1, [&](int p, int) { return store.motion[p].material; });
+  fill<PetscInt>(swarm_, "material", n, 1, [&](int p, int) { return store.rotation[p].material; });
   fill<PetscReal>(swarm_, "position", n, 3, [&](int p, int d) { return store.motion[p].position[d]; });
   fill<PetscReal>(swarm_, "velocity", n, 3, [&](int p, int d) { return store.motion[p].velocity[d]; });
-  fill<PetscReal>(swarm_, "spin", n, 3, [&](int p, int d) { return store.motion[p].spin[d]; });
+  fill<PetscReal>(swarm_, "spin", n, 3, [&](int p, int d) { return store.rotation[p].spin[d]; });
   fill<PetscReal>(swarm_, "radius", n, 1, [&](int p, int) { return store.motion[p].radius; });
   fill<PetscReal>(swarm_, "mass", n, 1, [&](int p, int) { return 1 / store.motion[p].inverse_mass; });
   const FluidAction none;

@@ -53,6 +53,7 @@ inline constexpr int trace_width = 7;
 
 struct PairSweep {
   const Motion* motion = nullptr;
+  const Rotation* rotation = nullptr;
   Load* load = nullptr;
   PairArrays pairs;
   LawSetup laws;
@@ -88,8 +89,8 @@ struct NearSearch {
   int after = -1;       ///< of them only those with higher numbers
   bool across = false;  ///< the nearest image may be another than the sphere itself
   const Periods* periods = nullptr;
-  double sphere[4] = {};  ///< x, y, z, radius of the one
-  double reach = 0;       ///< m, surfaces further apart are not near
+  double sphere[4] = {};     ///< x, y, z, radius of the one
+  double reach = 0;          ///< m, surfaces further apart are not near
   int* found = nullptr;      ///< out: numbers of those near; room for all looked at and seven
   double* square = nullptr;  ///< out: m2, squared distances of their centres
   int count = 0;             ///< out
@@ -98,19 +99,20 @@ struct NearSearch {
 /// The pairs of near spheres of a row of cells of a grid: of each cell with itself, with the next one along the row
 /// and with the three around it in each of the rows behind.
 struct RowSearch {
-  NearSearch search;             ///< the many, the reach, and what is found: the partners
-  const int* start[5] = {};      ///< [cells + 1] where the cells begin among the many: of the row, of those behind it
-  int rows = 0;                  ///< how many there are
-  int cells = 0;                 ///< in a row
-  int cell = 0, last = 0;        ///< in and out: the next cell to look at, those before `last`
-  int* seeker = nullptr;         ///< out: the first of each pair
-  int room = 0;                  ///< of the arrays of what is found; the search stops where it might not suffice
-  int needed = 0;                ///< out: for the cell it stopped at
+  NearSearch search;         ///< the many, the reach, and what is found: the partners
+  const int* start[5] = {};  ///< [cells + 1] where the cells begin among the many: of the row, of those behind it
+  int rows = 0;              ///< how many there are
+  int cells = 0;             ///< in a row
+  int cell = 0, last = 0;    ///< in and out: the next cell to look at, those before `last`
+  int* seeker = nullptr;     ///< out: the first of each pair
+  int room = 0;              ///< of the arrays of what is found; the search stops where it might not suffice
+  int needed = 0;            ///< out: for the cell it stopped at
 };
 
 /// Contacts with walls: the points the geometry gave, with history as for pairs.
 struct WallSweep {
   const Motion* motion = nullptr;
+  const Rotation* rotation = nullptr;
   Load* load = nullptr;
   int count = 0;
   const WallPoint* points = nullptr;
@@ -149,6 +151,7 @@ struct alignas(64) TurnStep {
 /// is a drift with second = h^2, without corrector.
 struct Integration {
   Motion* motion = nullptr;
+  Rotation* rotation = nullptr;
   Load *present = nullptr, *previous = nullptr;  ///< forces at the present positions; those of the step before
   /// Not 0 where the present or the previous load may be; null: anywhere.
   const unsigned char *loaded = nullptr, *loaded_before = nullptr;

@@ -26,11 +26,11 @@ SILT_INLINE void gather_pairs(const PairSweep& sweep, Block& block, int first, i
       for (int q = 0; q < lanes; ++q) {
         const Motion* ahead = &sweep.motion[j[block_size + q]];
         __builtin_prefetch(ahead);
-        __builtin_prefetch(reinterpret_cast<const char*>(ahead) + 64);
+        __builtin_prefetch(&sweep.rotation[j[block_size + q]]);
         __builtin_prefetch(&sweep.load[j[block_size + q]], 1);
         if (sweep.scattered) {
           __builtin_prefetch(&sweep.motion[i[block_size + q]]);
-          __builtin_prefetch(reinterpret_cast<const char*>(&sweep.motion[i[block_size + q]]) + 64);
+          __builtin_prefetch(&sweep.rotation[i[block_size + q]]);
           __builtin_prefetch(&sweep.load[i[block_size + q]], 1);
         }
       }
@@ -96,14 +96,14 @@ SILT_INLINE void measure_pairs(PairSweep& sweep, Block& block, int first, int co
 /// Approach and slip at the contact points, from the relative velocity and the spins.
 template <bool extended, bool several>
 SILT_INLINE void slip_of_pairs(const PairSweep& sweep, Block& block, int first, int count) {
-  const double* motion = reinterpret_cast<const double*>(sweep.motion);
-  constexpr int stride = sizeof(Motion) / sizeof(double);
+  const double* rotation = reinterpret_cast<const double*>(sweep.rotation);
+  constexpr int stride = sizeof(Rotation) / sizeof(double);
   const Pack materials(sweep.laws.materials);
   for (int o = 0; o < count; o += lanes) {
     const int *i = sweep.pairs.i + first + o, *j = sweep.pairs.j + first + o;
     Pack wi[4], wj[4], velocity[3], rolling[3];
-    load_columns(motion, stride, 8, i, wi);
-    load_columns(motion, stride, 8, j, wj);
+    load_columns(rotation, stride, 0, i, wi);
+    load_columns(rotation, stride, 0, j, wj);
     const Pack arm_i = load(&block.arm_i[o]), arm_j = load(&block.arm_j[o]);
     Contact<Pack> contact;
     for (int d = 0; d < 3; ++d) {
@@ -268,18 +268,19 @@ void wall_sweep(WallSweep& sweep) {
     for (int o = 0; o < padded; ++o) {
       const WallPoint& point = sweep.points[first + (o < count ? o : count - 1)];
       const Motion& particle = sweep.motion[point.particle];
+      const Rotation& rotation = sweep.rotation[point.particle];
       double velocity[3], rolling[3];
       Contact<double> contact;
       for (int d = 0; d < 3; ++d) {
         contact.normal[d] = point.normal[d];
         velocity[d] = particle.velocity[d] - point.velocity[d];
-        rolling[d] = point.distance * particle.spin[d];
+        rolling[d] = point.distance * rotation.spin[d];
       }
       set_relative_motion(contact, velocity, rolling);
       for (int d = 0; d < 3; ++d) {
         block.normal[d][o] = contact.normal[d];
         block.slip[d][o] = contact.slip[d];
-        block.spin[d][o] = particle.spin[d];
+        block.spin[d][o] = rotation.spin[d];
       }
       block.overlap[o] = particle.radius - point.distance;
       block.approach[o] = contact.approach;
@@ -289,7 +290,7 @@ void wall_sweep(WallSweep& sweep) {
       block.distance[o] = point.distance;
       block.rolling_inertia[o] = 1.4 * particle.radius * particle.radius / particle.inverse_mass;
       block.arm_i[o] = point.distance;
-      block.pair[o] = particle.material * sweep.laws.materials + point.material;
+      block.pair[o] = rotation.material * sweep.laws.materials + point.material;
       for (int d = 0; d < 3; ++d) block.torque[d][o] = 0;
     }
     laws.run(block, sweep.history + first, sweep.stride, padded, sweep.dt);

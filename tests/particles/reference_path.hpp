@@ -85,7 +85,7 @@ inline Loads loads_of(const ContactLaws& laws, Contact<double> contact, const Pa
 }
 
 /// The contact of two spheres, from their motion.
-inline Contact<double> contact_of(const Motion& a, const Motion& b, double& arm_i, double& arm_j) {
+inline Contact<double> contact_of(const Body& a, const Body& b, double& arm_i, double& arm_j) {
   Contact<double> contact;
   const Vec3 apart = vec3(a.position) - vec3(b.position);
   const double r = apart.norm();
@@ -109,7 +109,7 @@ inline Contact<double> contact_of(const Motion& a, const Motion& b, double& arm_
   return contact;
 }
 
-inline Loads one_contact(const ContactLaws& laws, const Motion& a, const Motion& b, double dt, double* history) {
+inline Loads one_contact(const ContactLaws& laws, const Body& a, const Body& b, double dt, double* history) {
   double arm_i, arm_j;
   const Contact<double> contact = contact_of(a, b, arm_i, arm_j);
   const PairProperties pair = laws.pair(static_cast<int>(a.material), static_cast<int>(b.material));

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double radius_a = 0.5e-3, radius_b = 0.8e-3;
 
-Motion moving(const Vec3& position, const Vec3& velocity, const Vec3& spin, double radius) {
-  Motion motion{};
+Body moving(const Vec3& position, const Vec3& velocity, const Vec3& spin, double radius) {
+  Body motion{};
   vec3(motion.position) = position, vec3(motion.velocity) = velocity, vec3(motion.spin) = spin;
   motion.radius = radius;
   motion.inverse_mass = 1 / (2500 * 4.18879 * std::pow(radius, 3));
@@ -33,9 +33,9 @@ std::vector<Loads> led(const LawRun& run, const Eigen::Matrix3d& turn, bool swap
   for (int k = 0; k < 40; ++k) {
     const double gap = 4e-6 - 3e-5 * std::sin(k * 0.08);  // in, out
     const Vec3 n = (axis + 2e-3 * k * along).normalized();
-    const Motion a = moving(turn * n * (radius_a + radius_b + gap), turn * (along - 0.1 * std::cos(k * 0.2) * axis),
-                            turn * Vec3(30, -60, 10), radius_a);
-    const Motion b = moving(Vec3::Zero(), turn * Vec3(0.01, 0, 0), turn * Vec3(-20, 5, 40), radius_b);
+    const Body a = moving(turn * n * (radius_a + radius_b + gap), turn * (along - 0.1 * std::cos(k * 0.2) * axis),
+                          turn * Vec3(30, -60, 10), radius_a);
+    const Body b = moving(Vec3::Zero(), turn * Vec3(0.01, 0, 0), turn * Vec3(-20, 5, 40), radius_b);
     if (!swapped) {
       loads.push_back(one_contact(run.laws, a, b, dt, history.data()));
     } else {
@@ -92,9 +92,9 @@ TEST_CASE("Every law gives finite loads whatever the contact", "[particles]") {
       const double gap = k % 7 == 0 ? 0.0 : k % 3 == 0 ? random(-2e-4, 2e-4) : random(-1e-6, 1e-6);
       const double still = k % 5 == 0 ? 0 : 1;
       const Vec3 n = random.vector(1).normalized();
-      const Motion a =
+      const Body a =
           moving(n * (radius_a + radius_b + gap), still * random.vector(10), still * random.vector(1e4), radius_a);
-      const Motion b = moving(Vec3::Zero(), still * random.vector(10), Vec3::Zero(), radius_b);
+      const Body b = moving(Vec3::Zero(), still * random.vector(10), Vec3::Zero(), radius_b);
       const Loads loads = one_contact(run.laws, a, b, k % 11 == 0 ? 0 : 1e-6, history.data());
       finite = finite && std::isfinite(loads.force.norm() + loads.torque_i.norm() + loads.torque_j.norm());
       for (const double h : history) finite = finite && std::isfinite(h);

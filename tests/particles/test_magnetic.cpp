@@ -193,15 +193,15 @@ TEST_CASE("Two free magnets keep momentum and angular momentum, spin included, t
     for (int p = 0; p < 2; ++p) {
       const Motion& motion = run.engine.store.motion[p];
       const double mass = 1 / motion.inverse_mass;
-      sum +=
-          mass * run.position(p).cross(Vec3(vec3(motion.velocity))) + 0.4 * mass * radius * radius * vec3(motion.spin);
+      sum += mass * run.position(p).cross(Vec3(vec3(motion.velocity))) +
+             0.4 * mass * radius * radius * vec3(run.engine.store.rotation[p].spin);
     }
     return sum;
   };
   const Vec3 before = angular();
   run.engine.advance(0, 1e-7);
   CHECK((angular() - before).norm() < 1e-11 * before.norm());
-  CHECK(vec3(run.engine.store.motion[0].spin).norm() != Approx(std::sqrt(10) * 1e5).epsilon(1e-3));
+  CHECK(vec3(run.engine.store.rotation[0].spin).norm() != Approx(std::sqrt(10) * 1e5).epsilon(1e-3));
 }
 
 TEST_CASE("Magnets in a viscous fluid and a uniform field form chains along it", "[magnetic][slow]") {

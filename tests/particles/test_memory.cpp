@@ -83,25 +83,29 @@ TEST_CASE(
   const auto bits = [](double a) { return std::bit_cast<std::uint64_t>(a); };
   for (const int kinds : {1, 3, 40, count}) {
     std::vector<Motion> motion(count), back(count);
+    std::vector<Rotation> rotation(count), turned_back(count);
     std::vector<Load> load(count), load_back(count, Load{{1, 1, 1, 1}, {1, 1, 1, 1}});
     for (int p = 0; p < count; ++p) {
       const int kind = kinds == count ? p : static_cast<int>(random(0, kinds));
       for (int d = 0; d < 3; ++d) {
-        motion[p].position[d] = random(-1, 1), motion[p].velocity[d] = -0.0 * d, motion[p].spin[d] = random(-1e3, 1e3);
+        motion[p].position[d] = random(-1, 1), motion[p].velocity[d] = -0.0 * d,
+        rotation[p].spin[d] = random(-1e3, 1e3);
         load[p].force[d] = random(-1, 1), load[p].torque[d] = random(-1e-9, 1e-9);
       }
       load[p].force[3] = load[p].torque[3] = 0;
       motion[p].radius = 1e-3 * (1 + kind / 2), motion[p].inverse_mass = 1 / (1e-3 + kind),
-      motion[p].material = kind % 2;
+      rotation[p].material = kind % 2;
     }
-    const PackedMotions packed(motion.data(), count);
-    packed.unpack(back.data());
+    const PackedMotions packed(motion.data(), rotation.data(), count);
+    packed.unpack(back.data(), turned_back.data());
     const PackedLoads packed_load(load.data(), count);
     packed_load.unpack(load_back.data());
     int different = 0;
     for (int p = 0; p < count; ++p) {
       const auto *a = reinterpret_cast<const double*>(&motion[p]), *b = reinterpret_cast<const double*>(&back[p]);
-      for (int k = 0; k < 12; ++k) different += bits(a[k]) != bits(b[k]);
+      for (int k = 0; k < 8; ++k) different += bits(a[k]) != bits(b[k]);
+      for (int d = 0; d < 3; ++d) different += bits(rotation[p].spin[d]) != bits(turned_back[p].spin[d]);
+      different += bits(rotation[p].material) != bits(turned_back[p].material);
       const auto *c = reinterpret_cast<const double*>(&load[p]), *e = reinterpret_cast<const double*>(&load_back[p]);
       for (int k = 0; k < 8; ++k) different += bits(c[k]) != bits(e[k]);
     }
@@ -152,20 +156,23 @@ TEST_CASE("Particles without load move by the same bits whether their loads are 
   for (const char* name : {"plain", "avx2", "avx512"}) {
     if (std::string(name) == "avx2" && !__builtin_cpu_supports("avx2")) continue;
     if (std::string(name) == "avx512" && !__builtin_cpu_supports("avx512dq")) continue;
-    for (const bool drift : {true, false}) {
-      INFO(name << " drift " << drift);
+    for (const auto& [drift, falls] : {std::pair{true, true}, std::pair{true, false}, std::pair{false, true}}) {
+      INFO(name << " drift " << drift << " falls " << falls);
       struct Copy {
         Aligned<Motion> motion;
+        Aligned<Rotation> rotation;
         Aligned<Load> present, previous;
         Aligned<double> turned;
       } with, without;
       std::vector<unsigned char> now(count), before(count);
-      with.motion.reserve(count), with.present.reserve(count), with.previous.reserve(count);
+      with.motion.reserve(count), with.rotation.reserve(count), with.present.reserve(count),
+          with.previous.reserve(count);
       with.turned.reserve(4 * count);
       for (int p = 0; p < count; ++p) {
         Motion& m = with.motion[p];
-        vec3(m.position) = random.vector(1), vec3(m.velocity) = random.vector(1), vec3(m.spin) = random.vector(100);
-        m.radius = random(1e-3, 2e-3), m.inverse_mass = random(1e3, 1e5), m.material = 0;
+        vec3(m.position) = random.vector(1), vec3(m.velocity) = random.vector(1);
+        vec3(with.rotation[p].spin) = random.vector(100);
+        m.radius = random(1e-3, 2e-3), m.inverse_mass = random(1e3, 1e5);
         now[p] = random(0, 1) < 0.2, before[p] = random(0, 1) < 0.2;
         with.turned[4 * p] = 1;
         for (int d = 0; d < 3; ++d) {
@@ -173,16 +180,17 @@ TEST_CASE("Particles without load move by the same bits whether their loads are 
           if (before[p]) with.previous[p].force[d] = random(-1, 1), with.previous[p].torque[d] = random(-1e-3, 1e-3);
         }
       }
-      without.motion = Aligned<Motion>(with.motion);
+      without.motion = Aligned<Motion>(with.motion), without.rotation = Aligned<Rotation>(with.rotation);
       without.present = Aligned<Load>(with.present), without.previous = Aligned<Load>(with.previous);
       without.turned = Aligned<double>(with.turned);
       double largest[2];
       for (Copy* copy : {&with, &without}) {
         Integration step;
-        step.motion = copy->motion.data(), step.present = copy->present.data(), step.previous = copy->previous.data();
+        step.motion = copy->motion.data(), step.rotation = copy->rotation.data();
+        step.present = copy->present.data(), step.previous = copy->previous.data();
         step.count = count, step.dt = 1e-5, step.second = 0.5e-10, step.correct = true, step.drift = drift;
         step.orientation = reinterpret_cast<double(*)[4]>(copy->turned.data());
-        step.gravity[2] = -9.81, step.gravity[0] = 0.3;
+        if (falls) step.gravity[2] = -9.81, step.gravity[0] = 0.3;
         if (copy == &without) step.loaded = now.data(), step.loaded_before = before.data();
         choose_kernels(name).integrate(step);
         largest[copy == &without] = step.largest_square;
@@ -192,7 +200,8 @@ TEST_CASE("Particles without load move by the same bits whether their loads are 
       for (int p = 0; p < count; ++p) {
         const Motion &a = with.motion[p], &b = without.motion[p];
         for (int d = 0; d < 3; ++d)
-          different += a.position[d] != b.position[d] || a.velocity[d] != b.velocity[d] || a.spin[d] != b.spin[d] ||
+          different += a.position[d] != b.position[d] || a.velocity[d] != b.velocity[d] ||
+                       with.rotation[p].spin[d] != without.rotation[p].spin[d] ||
                        (drift && without.previous[p].force[d] != 0);
         for (int d = 0; d < 4; ++d) different += with.turned[4 * p + d] != without.turned[4 * p + d];
       }

@@ -54,9 +54,9 @@ std::set<std::pair<int, int>> pairs_by_looking_at_all(const Store& store, const 
 
 TEST_CASE("The lists hold every pair nearer than the reach, once, and no other, in any order of the spheres") {
   // Rows of cells without a wrap, rows of nothing but wraps, single cells.
-  const Box boxes[] = {{{12, 9, 8}, {false, false, false}}, {{12, 9, 8}, {true, true, true}},
-                       {{12, 9, 8}, {true, false, false}},  {{12, 9, 8}, {false, true, false}},
-                       {{12, 9, 8}, {false, false, true}},  {{40, 3.5, 3.5}, {true, true, true}},
+  const Box boxes[] = {{{12, 9, 8}, {false, false, false}},   {{12, 9, 8}, {true, true, true}},
+                       {{12, 9, 8}, {true, false, false}},    {{12, 9, 8}, {false, true, false}},
+                       {{12, 9, 8}, {false, false, true}},    {{40, 3.5, 3.5}, {true, true, true}},
                        {{3.5, 3.5, 40}, {true, true, false}}, {{60, 1, 1}, {false, false, false}}};
   for (const char* instructions : {"plain", "auto"})
     for (const Box& box : boxes) {

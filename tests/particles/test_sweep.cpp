@@ -33,8 +33,7 @@ void compare(const LawCase& setup, const char* instructions, bool several, unsig
   store.id.resize(store.owned);
   Random random(seed);
   for (int p = 0; p < store.owned; ++p) {
-    Motion& m = store.motion[p];
-    m = Motion{};
+    Body m{};
     m.radius = random(0.4e-3, 1.2e-3);
     m.material = several ? std::floor(random(0, 2)) : 0;
     m.inverse_mass = 1 / (*run.materials[static_cast<int>(m.material)].density * 4.18879 * std::pow(m.radius, 3));
@@ -47,6 +46,7 @@ void compare(const LawCase& setup, const char* instructions, bool several, unsig
       const double overlap = random(-0.05, 0.2) * std::min(m.radius, other.radius);  // some do not touch
       vec3(m.position) = vec3(other.position) + (m.radius + other.radius - overlap) * n;
     }
+    store.set_body(p, m);
   }
   store.place_padding();
   ContactLists lists(components);
@@ -58,6 +58,7 @@ void compare(const LawCase& setup, const char* instructions, bool several, unsig
   lists.pad(store.padding());
   PairSweep sweep;
   sweep.motion = store.motion.data();
+  sweep.rotation = store.rotation.data();
   sweep.load = store.present.data();
   sweep.pairs = lists.pairs();
   sweep.laws = run.laws.setup();
@@ -69,7 +70,7 @@ void compare(const LawCase& setup, const char* instructions, bool several, unsig
   double largest = 0, difference = 0;
   std::vector<double> longest(components), drift(components);
   for (int k = 0; k < count; ++k) {
-    const Motion &a = store.motion[2 * k], &b = store.motion[2 * k + 1];
+    const Body a = store.body(2 * k), b = store.body(2 * k + 1);
     const Loads expected = one_contact(run.laws, a, b, sweep.dt, history[k].data());
     const Load &on_i = store.present[2 * k], &on_j = store.present[2 * k + 1];
     largest = std::max({largest, expected.force.norm(), expected.torque_i.norm() / a.radius});

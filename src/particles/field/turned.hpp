@@ -13,7 +13,7 @@ inline void turn_with_particles(const Store& store, double dt, double* vectors) 
   for (int p = 0; p < store.owned; ++p) {
     const Motion& motion = store.motion[p];
     const double inverse_inertia = 2.5 * motion.inverse_mass / (motion.radius * motion.radius);
-    const Vec3 spin = vec3(motion.spin) - 0.5 * dt * inverse_inertia * vec3(store.previous[p].torque);
+    const Vec3 spin = vec3(store.rotation[p].spin) - 0.5 * dt * inverse_inertia * vec3(store.previous[p].torque);
     const double rate = spin.norm();
     if (rate == 0) continue;
     const Vec3 before = vec3(&vectors[3 * p]);

@@ -61,8 +61,8 @@ void ParticleHeat::conduct(Store& store, const ContactLists& contacts, const Per
     } else {
       area = a.radius * b.radius / (a.radius + b.radius) * overlap;
     }
-    const Material &first = materials_[static_cast<int>(a.material)],
-                   &second = materials_[static_cast<int>(b.material)];
+    const Material &first = materials_[static_cast<int>(store.rotation[i].material)],
+                   &second = materials_[static_cast<int>(store.rotation[j].material)];
     double radius = std::sqrt(std::max(area, 0.0));
     if (options_.real_young_modulus)
       radius *= std::pow(0.5 * (first.young_modulus + second.young_modulus) / *options_.real_young_modulus, 0.2);
@@ -90,7 +90,7 @@ void ParticleHeat::advance(Store& store, const ContactLists& contacts, const Per
     if (options_.emissivity > 0)
       gain += options_.emissivity * stefan_boltzmann_constant * 4 * std::numbers::pi * r * r *
               (std::pow(environment_(x, time - dt), 4) - T * T * T * T);
-    const double capacity = this->capacity(motion), z = exchange[p] * dt / capacity;
+    const double capacity = this->capacity(store, p), z = exchange[p] * dt / capacity;
     // dT = ((T_f - T) + gain/(h A)) (1 - exp(-z)), and its limit without exchange.
     const double relaxed = z > 0 ? -std::expm1(-z) : 0, share = z > 1e-12 ? relaxed / z : 1;
     const double change = relaxed * (outside[p] - T) + share * gain * dt / capacity;

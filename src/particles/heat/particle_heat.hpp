@@ -63,8 +63,9 @@ class ParticleHeat {
   /// Moves the temperatures of this rank's particles on by dt, up to `time`.
   void advance(Store& store, const ContactLists& contacts, const Periods& periods, double time, double dt);
   /// J/K, m c_p of a particle.
-  double capacity(const Motion& motion) const {
-    return materials_[static_cast<int>(motion.material)].heat_capacity.value_or(0) / motion.inverse_mass;
+  double capacity(const Store& store, int p) const {
+    const auto material = static_cast<int>(store.rotation[p].material);
+    return materials_[material].heat_capacity.value_or(0) / store.motion[p].inverse_mass;
   }
   /// s, in which conduction between the smallest particles that overlap by a tenth of their radius would even out.
   double conduction_time(double radius, int material) const;
