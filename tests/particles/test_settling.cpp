@@ -34,16 +34,19 @@ TEST_CASE("A poured bed settles to at least 55 % of solids and comes to rest", "
   Particles particles(mesh, options, Vec3(0, 0, -9.81));
   particles.settle();
   CHECK(particles.total() == 1500);
-  double volume = 0, moment = 0, fastest = 0;
+  double volume = 0, moment = 0, square = 0;
   for (int i = 0; i < particles.owned(); ++i) {
     volume += particles.volume(i);
     moment += particles.volume(i) * particles.position(i)[2];
-    fastest = std::max(fastest, particles.velocity(i).norm());
+    square += particles.velocity(i).squaredNorm() / particles.owned();
   }
   // The height of a bed of even density is twice that of its centre of mass.
   const double height = 2 * moment / volume, solids = volume / (0.012 * 0.01 * height);
-  INFO("solids " << solids << ", fastest " << fastest);
+  // At rest as -settle_speed says, in the mean square: the fastest of all is one that rattles between others, and
+  // 0.015 to 0.022 m/s with another order of sums (plain, AVX2 or AVX-512).
+  const double mean = std::sqrt(square);
+  INFO("solids " << solids << ", root mean square of the speed " << mean);
   CHECK(solids > 0.55);
   CHECK(solids < 0.68);
-  CHECK(fastest < 0.02);
+  CHECK(mean < 1e-3);
 }
