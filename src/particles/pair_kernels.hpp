@@ -37,20 +37,22 @@ SILT_INLINE Lanes places(int first, int begin, int end) {
 SILT_INLINE Lanes both(Lanes a, Lanes b) { return a & b; }
 #endif
 
-/// 1/sqrt(a) in the lanes that count, 0 in the others. Where the processor has an estimate y, its error e = 1 - a y^2
-/// is taken out by the series of (1 - e)^(-1/2), to round-off.
-SILT_INLINE Pack inverse_root(Pack a, Lanes counts) {
+/// 1/r and 1/r^2 in the lanes that count, 0 in the others.
+struct Inverse {
+  Pack one, two;
+};
+SILT_INLINE Inverse inverse_of(Pack square, Lanes counts) {
 #if SILT_LANES == 8
-  const Pack y = Vector(_mm512_maskz_rsqrt14_pd(counts, __m512d(a.v)));
-  const Pack e = 1.0 - a * y * y;
-  return y + y * e * (0.5 + e * (0.375 + e * 0.3125));
-#elif defined(__AVX2__)
-  const Pack estimate = Vector(_mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(__m256d(a.v)))));
-  const Pack y = Vector(Bits(estimate.v) & counts.bits);
-  const Pack e = 1.0 - a * y * y;
-  return y + y * e * (0.5 + e * (0.375 + e * (0.3125 + e * 0.2734375)));
+  // The error e = 1 - a y^2 of the processor's estimate y is taken out by the series of (1 - e)^(-1/2), to round-off.
+  const Pack y = Vector(_mm512_maskz_rsqrt14_pd(counts, __m512d(square.v)));
+  const Pack e = 1.0 - square * y * y;
+  const Pack one = y + y * e * (0.5 + e * (0.375 + e * 0.3125));
+  return {one, one * one};
 #else
-  return select(counts, 1.0 / sqrt(a), Pack(0.0));
+  // Quotient and root of up to four lanes are done beside the products and sums, which are the longer work; those that
+  // would mend an estimate of single precision come on top of them.
+  const Pack two = select(counts, 1.0 / square, Pack(0.0));
+  return {sqrt(two), two};
 #endif
 }
 SILT_INLINE double sum_of(Pack a) {
@@ -59,6 +61,7 @@ SILT_INLINE double sum_of(Pack a) {
   return sum;
 }
 SILT_INLINE void add_to(double* p, Pack a) { store_unaligned(p, load_unaligned(p) + a); }
+SILT_INLINE void take_from(double* p, Pack a, Pack b) { store_unaligned(p, load_unaligned(p) - a * b); }
 
 /// What a loop takes along with the pairs.
 enum class Which { once, all, near };  ///< both of a pair at once; one of it; one of it, up to the cut-off
@@ -90,35 +93,37 @@ SILT_INLINE void act_on(const PairLoop& loop, int i, int begin, int end) {
     Lanes counts = apart(r2);
     if constexpr (which == Which::near) counts = both(counts, below(r2, square));
     if (j < begin || j + lanes > end) counts = both(counts, places(j, begin, end));
-    const Pack inverse = inverse_root(r2, counts), inverse2 = inverse * inverse, inverse3 = inverse2 * inverse;
+    const auto [inverse, inverse2] = inverse_of(r2, counts);
+    const Pack inverse3 = inverse2 * inverse;
     if constexpr (dipole) {
       const Pack nx = load_unaligned(A + j), ny = load_unaligned(B + j), nz = load_unaligned(C + j);
       const Pack inverse5 = inverse3 * inverse2;
-      const Pack b = nx * dx + ny * dy + nz * dz, q = inverse5 * b;
-      Pack p;
-      if constexpr (force || mutual) p = inverse5 * (mx * dx + my * dy + mz * dz);
+      const Pack b = nx * dx + ny * dy + nz * dz;
+      Pack c;
+      if constexpr (force || mutual) c = mx * dx + my * dy + mz * dz;
       if constexpr (force) {
-        const Pack m = mx * nx + my * ny + mz * nz;
-        const Pack g = inverse5 * m - 5.0 * inverse2 * b * p;
-        const Pack gx = g * dx + q * mx + p * nx, gy = g * dy + q * my + p * ny, gz = g * dz + q * mz + p * nz;
-        fx = fx + gx;
-        fy = fy + gy;
-        fz = fz + gz;
+        // All over 1/r^5, which comes in with the sums.
+        const Pack g = mx * nx + my * ny + mz * nz - 5.0 * inverse2 * b * c;
+        const Pack gx = g * dx + b * mx + c * nx, gy = g * dy + b * my + c * ny, gz = g * dz + b * mz + c * nz;
+        fx = fx + inverse5 * gx;
+        fy = fy + inverse5 * gy;
+        fz = fz + inverse5 * gz;
         if constexpr (mutual) {
-          add_to(FX + j, -gx);
-          add_to(FY + j, -gy);
-          add_to(FZ + j, -gz);
+          take_from(FX + j, inverse5, gx);
+          take_from(FY + j, inverse5, gy);
+          take_from(FZ + j, inverse5, gz);
         }
       }
       if constexpr (field) {
-        const Pack third = (1.0 / 3.0) * inverse3;
+        const Pack third = (1.0 / 3.0) * inverse3, q = inverse5 * b;
         hx = hx + q * dx - third * nx;
         hy = hy + q * dy - third * ny;
         hz = hz + q * dz - third * nz;
         if constexpr (mutual) {
-          add_to(HX + j, p * dx - third * mx);
-          add_to(HY + j, p * dy - third * my);
-          add_to(HZ + j, p * dz - third * mz);
+          const Pack p = inverse5 * c;
+          store_unaligned(HX + j, load_unaligned(HX + j) + p * dx - third * mx);
+          store_unaligned(HY + j, load_unaligned(HY + j) + p * dy - third * my);
+          store_unaligned(HZ + j, load_unaligned(HZ + j) + p * dz - third * mz);
         }
       }
     } else {

@@ -83,9 +83,11 @@ TEST_CASE("Two dipoles attract head to tail, repel side by side with half of tha
 
 TEST_CASE("Forces between dipoles are the sums over pairs: with images, with a cut-off, on any ranks and instructions",
           "[magnetic][mpi]") {
-  for (const std::string instructions : {"plain", "auto"})
+  __builtin_cpu_init();
+  for (const std::string instructions : {"plain", "avx2", "auto"})
     for (const bool periodic : {false, true})
       for (const double cutoff : {0.0, 0.9e-6}) {
+        if (instructions == "avx2" && !__builtin_cpu_supports("avx2")) continue;
         const double side = 4e-6;
         BoxCase setup = magnets("permanent", side).set("particles_instructions", instructions);
         setup.set("magnetic_cutoff", fmt::format("{}", cutoff)).set("magnetic_field", "2e3, 0, 1e3");
