@@ -80,6 +80,7 @@ void Engine::add(const std::vector<Seed>& seeds) {
     if (seed.material < 0 || seed.material >= materials.count())
       throw UserError("particles need a material: give -material_<name>_density and the other properties");
     if (!(seed.radius > 0)) throw UserError(fmt::format("a particle radius of {} m; allowed: above 0", seed.radius));
+    if (heat_) heat_->check(seed.material);
     points.push_back(seed.position);
   }
   const std::vector<Place> places = migration_.locator().claim(points);
@@ -267,6 +268,7 @@ ParticleStep Engine::advance(double time, double dt) {
     Integration step = pass(h);
     step.correct = s > 0 && late > 0 && !energy_;
     step.drift = true;
+    want_turns(step);
     kernels_.integrate(step);
     strode_ = std::sqrt(step.largest_square);
     double way = strode_, farthest = travel_ + strode_;
@@ -275,6 +277,8 @@ ParticleStep Engine::advance(double time, double dt) {
       farthest = noise.from_lists;
       way += noise.jump;
     }
+    if (step.turned)
+      for (const auto& field : fields_) field->turn(store, step.turned);
     store.present.swap(store.previous);
     loaded_.swap(loaded_before_);
     few_loaded_before_ = few_loaded_;

@@ -131,6 +131,8 @@ class Engine {
   void add_wall_impulses(double h);
   /// Adds the force fields' part to the present loads.
   void act_fields(double time, double dt);
+  /// Asks the pass for the rotations of the step where a field has vectors that turn with the particles.
+  void want_turns(Integration& step);
   void come_to_rest(const SettleOptions& options);
   /// Temperatures of held particles, in steps that conduction allows.
   void heat_held(double time, double dt);

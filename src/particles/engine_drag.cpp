@@ -54,6 +54,7 @@ void Engine::prepare_turning(double h) {
     step.first = z > 0 ? -std::expm1(-z) / step.rate : h;
     step.corrector = z > 1e-2 ? (1 - step.first / h) / step.rate
                               : h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z * (1.0 / 120 - z / 720))));
+    step.second = options_.late_share() == 0 ? h * step.first : h * step.corrector;
     store.turning[p] = step;
   }
 }

@@ -22,6 +22,12 @@ void Engine::act_fields(double time, double dt) {
   field_size_ = step.size;
 }
 
+void Engine::want_turns(Integration& step) {
+  if (std::none_of(fields_.begin(), fields_.end(), [](const auto& field) { return field->turns(); })) return;
+  store.turned.reserve(4 * static_cast<std::size_t>(store.owned));
+  step.turned = reinterpret_cast<double(*)[4]>(store.turned.data());
+}
+
 void Engine::evaluate(double time, double dt) {
   const LawSetup& setup = laws_.setup();
   CandidateSweep search;

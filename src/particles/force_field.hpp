@@ -30,6 +30,10 @@ class ForceField {
  public:
   virtual ~ForceField() = default;
   virtual void act(FieldStep& step) = 0;
+  /// Whether it has vectors that are fixed in the particles.
+  virtual bool turns() const { return false; }
+  /// Turns them by the rotation vectors of a step ([owned][4], rad).
+  virtual void turn(Store&, const double (*)[4]) {}
   /// Durations that the time step must resolve, for the smallest particles of each material.
   virtual std::vector<StepBound> bounds(const Materials& materials, const SmallestRadii& smallest) const = 0;
   /// What the user should know at these sizes, a line each.

@@ -107,7 +107,7 @@ void integrate_all(Integration& step) {
     const double inverse_inertia = 2.5 * inverse_mass / (motion.radius * motion.radius);
     const Quad force = quad(step.present[p].force), torque = quad(step.present[p].torque);
     double first = h, second = step.second, corrector = 0.5 * h, share = 1;
-    double turn_first = h, turn_corrector = 0.5 * h;
+    double turn_first = h, turn_corrector = 0.5 * h, turn_second = step.second;
     Quad impulse{};
     if constexpr (fluid) {
       first = step.drag[p].first;
@@ -119,6 +119,7 @@ void integrate_all(Integration& step) {
     if constexpr (turning) {
       turn_first = step.turning[p].first;
       turn_corrector = step.turning[p].corrector;
+      turn_second = step.turning[p].second;
     }
     if constexpr (correct) {
       const Quad change = move * (force - quad(step.previous[p].force));
@@ -160,12 +161,14 @@ void integrate_all(Integration& step) {
             scalar_product(every(1 / inverse_inertia) * turn * (every(turn_first) * turned - every(h) * others),
                            spin + every(0.5 * turn_first) * turn * turned);
       }
-      turned *= every(turn_first) * turn;
-      spin += turned;
-      if (step.orientation) {
-        const Quad mean = every(h) * (spin - every(step.late_share) * turned);
-        turn_by(step.orientation[p], mean[0], mean[1], mean[2]);
+      turned *= turn;
+      if (step.orientation || step.turned) {
+        // As the position: exact for a constant torque, whatever the hold of the fluid.
+        const Quad angle = every(h) * spin + every(turn_second) * turned;
+        if (step.orientation) turn_by(step.orientation[p], angle[0], angle[1], angle[2]);
+        if (step.turned) *reinterpret_cast<Quad*>(step.turned[p]) = angle;
       }
+      spin += every(turn_first) * turned;
       const Quad moved = position - quad(motion.position);
       *reinterpret_cast<Quad*>(motion.position) = position;
       ways.add(square_lengths(moved, Quad{}, Quad{}, Quad{}));

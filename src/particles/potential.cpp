@@ -101,6 +101,12 @@ void ElectricPotential::solve(double permittivity, const std::vector<double>& ch
   for (int i = 0; i < mesh_.nodes; ++i) potential_[i] += change[i];
 }
 
+double ElectricPotential::strongest() const {
+  double largest = 0;
+  for (std::size_t i = 0; i < field_.size(); i += 3) largest = std::max(largest, vec3(&field_[i]).norm());
+  return mpi_max(largest);
+}
+
 void ElectricPotential::at(const double* x, int hint, Vec3& field, Mat3& gradient) const {
   const Place place = locator_.find(x, hint);
   double xi[3] = {place.xi[0], place.xi[1], place.xi[2]};

@@ -29,6 +29,8 @@ class ElectricPotential {
 
   /// E and gradient(k, d) = dE_k/dx_d at x, near the local cell `hint`. Local.
   void at(const double* x, int hint, Vec3& field, Mat3& gradient) const;
+  /// V/m, the largest |E| at the nodes. Collective.
+  double strongest() const;
   const std::vector<double>& values() const { return potential_; }  ///< [nodes] V
 
  private:

@@ -45,7 +45,7 @@ std::vector<std::pair<std::string, std::size_t>> Store::bytes() const {
   return {{"motion", motion.capacity() * sizeof(Motion) + rotation.capacity() * sizeof(Rotation)},
           {"loads", (present.capacity() + previous.capacity()) * sizeof(Load)},
           {"fluid", action.capacity() * sizeof(FluidAction) + drag.capacity() * sizeof(DragStep) +
-                        turning.capacity() * sizeof(TurnStep)},
+                        turning.capacity() * sizeof(TurnStep) + turned.capacity() * sizeof(double)},
           {"ids, cells, origins",
            id.capacity() * sizeof(id[0]) + cell.capacity() * sizeof(int) + origin_.capacity() * sizeof(float)},
           {"columns", columns.bytes()}};

@@ -22,6 +22,7 @@ struct Store {
   Aligned<Load> previous;        ///< contact forces of the step before
   Aligned<DragStep> drag;        ///< [owned] only while a fluid acts
   Aligned<TurnStep> turning;     ///< [owned] only while a fluid holds the spins
+  Aligned<double> turned;        ///< [owned][4] rad, of a step, only while a field has vectors fixed in the particles
   std::vector<std::int64_t> id;  ///< [owned + ghosts]
   std::vector<int> cell;         ///< [owned]
   bool acted_on = false;         ///< a fluid or who plays it has asked for the actions

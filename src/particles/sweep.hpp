@@ -144,6 +144,7 @@ struct alignas(64) TurnStep {
   double rate;       ///< 1/s, k/I
   double first;      ///< s, (1 - exp(-rate h))/rate
   double corrector;  ///< s, (h - first)/(rate h)
+  double second;     ///< s2, (h - first)/rate; h^2/2 without torque, more with semi-implicit Euler as for DragStep
 };
 
 /// Velocity Verlet as predictor (drift: position, and velocity with the present force, so that velocity-dependent
@@ -159,9 +160,10 @@ struct Integration {
   const TurnStep* turning = nullptr;  ///< null: no viscous torque; only with drag
   int count = 0;
   double dt = 0;
-  double second = 0;                   ///< s2, how far a unit acceleration moves a particle without drag
+  double second = 0;                   ///< s2, how far a unit acceleration moves and turns a particle without a fluid
   double (*orientation)[4] = nullptr;  ///< unit quaternions w, x, y, z; null: not wanted
-  double late_share = 0.5;             ///< of a step's new torque in the turn over that step
+  double (*turned)[4] = nullptr;       ///< out: rad, the rotation vector of the step; null: not wanted
+  double late_share = 0.5;             ///< of the forces at the end of a step in its impulse
   alignas(32) double gravity[4] = {0, 0, 0, 0};
   alignas(32) double move[4] = {1, 1, 1, 0};  ///< directions that may move
   alignas(32) double turn[4] = {1, 1, 1, 0};  ///< axes that may turn

@@ -21,7 +21,9 @@ const double response = mass / friction;  // 1.56e-9 s
 
 /// Beads of 100 nm in water at rest, a micrometre apart.
 struct Suspension {
-  explicit Suspension(int n, const std::string& step, bool overdamped = false) : run(setup(step, overdamped)) {
+  explicit Suspension(int n, const std::string& step, bool overdamped = false)
+      : Suspension(setup(step, overdamped), n) {}
+  Suspension(const BoxCase& box, int n) : run(box) {
     std::vector<Seed> seeds;
     for (int k = 0; k < n * n * n; ++k)
       seeds.push_back(sphere(1e-6 * Vec3(k % n - 0.5 * n + 0.5, k / n % n - 0.5 * n + 0.5, k / (n * n) - 0.5 * n + 0.5),
@@ -137,4 +139,41 @@ TEST_CASE("What Brownian motion gives the particles is accounted to the drag, th
   suspension.advance(1e-8);
   const auto in = suspension.run.particles.take_impulses();
   CHECK((in.drag - suspension.run.particles.momentum()).norm() < 1e-12 * in.drag.norm());
+}
+
+TEST_CASE("Brownian orientations forget themselves as exp(-2 D_r t), for steps below and beyond the spin's response",
+          "[brownian]") {
+  // Debye 1929: the mean cosine of the angle turned, D_r = k_B T/k_r; the spin's response time is 3/10 of the
+  // velocity's.
+  const double spin_exchange = pi * viscosity * std::pow(diameter, 3);
+  const double rotational = boltzmann_constant * temperature / spin_exchange, time = 0.5 / (2 * rotational);
+  for (const char* step : {"2e-6", "2e-7", "5e-11"}) {
+    // The shortest step for as long as takes a few hundred of them.
+    const double end = step[0] == '5' ? 20 * response : time;
+    BoxCase setup = Suspension::setup(step, false);
+    setup.set("magnetic_type", "permanent").set("magnetic_magnetisation", "1e-3").set("magnetic_direction", "0, 0, 1");
+    setup.set("magnetic_cutoff", "2e-7").set("particles_orientation", "yes").set("particles_skin", "1e-6");
+    Suspension suspension(setup, 12);
+    suspension.advance(end, Vec3::Zero(), spin_exchange);
+    Particles& particles = suspension.run.particles;
+    const double* moment = particles.columns().values(particles.columns().find("magnetic_moment"));
+    const double* q = particles.columns().values(particles.columns().find("orientation"));
+    double cosine = 0, square = 0, apart = 0;
+    for (int p = 0; p < particles.owned(); ++p) {
+      const Vec3 m = vec3(&moment[3 * p]).normalized();
+      // The particle's z axis in space, by its quaternion.
+      const double* r = &q[4 * p];
+      const Vec3 z(2 * (r[1] * r[3] + r[0] * r[2]), 2 * (r[2] * r[3] - r[0] * r[1]),
+                   1 - 2 * (r[1] * r[1] + r[2] * r[2]));
+      cosine += m[2] / 1728, square += m[2] * m[2] / 1728;
+      apart = std::max(apart, (z - m).norm());
+    }
+    // A spin that starts at rest lags by 3/2 of its response time, as a velocity does.
+    const double lag = 1.5 * 0.3 * response;
+    INFO("step " << step << ": mean cosine " << cosine);
+    const double error = 3 * std::sqrt((square - cosine * cosine) / 1728);
+    CHECK(cosine == Approx(std::exp(-2 * rotational * (end - lag))).margin(error));
+    CHECK((square - cosine * cosine) > 0);
+    CHECK(apart < (step[0] == '5' ? 1e-6 : 1));
+  }
 }

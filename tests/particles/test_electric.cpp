@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -102,6 +104,60 @@ TEST_CASE("Charges repel each other by Coulomb's law, in opposite directions to 
   }
   MPI_Allreduce(MPI_IN_PLACE, sum.data(), 3, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   CHECK(sum.norm() < 1e-15 * size);
+}
+
+TEST_CASE("In a constant field conductivities decide the induced dipole if asked", "[electric]") {
+  for (const auto& [inside, factor] : {std::pair{"0.04", 3.0 / 6}, {"0", -0.5}}) {
+    Charges run(electric("dc")
+                    .set("electric_field", "1e6 + 1e10*x, -1e10*y, 0")
+                    .set("electric_particle_permittivity", "10")
+                    .set("electric_fluid_permittivity", "2.5")
+                    .set("electric_polarisation", "conductivity")
+                    .set("electric_particle_conductivity", inside)
+                    .set("electric_fluid_conductivity", "0.01"));
+    run.engine.add({sphere(Vec3::Zero(), Vec3::Zero(), radius)});
+    run.engine.advance(0, 1e-15);
+    CHECK(run.force(0)[0] == Approx(pi / 2 * 2.5 * vacuum_permittivity * factor * cube * 1e6 * 1e10));
+  }
+}
+
+TEST_CASE("A permanent dipole swings in a field with omega^2 = p E/I, of second order in the step", "[electric]") {
+  const double mass = 2500 * pi / 6 * cube, inertia = 0.4 * mass * radius * radius;
+  const double omega = std::sqrt(1e-18 * 1e6 / inertia), end = 2 / omega, angle = 1e-3;
+  double error[2];
+  for (int k = 0; k < 2; ++k) {
+    BoxCase setup = electric("dc").set("electric_field", "0, 0, 1e6").set("particles_step_override", "yes");
+    setup.set("electric_dipole", fmt::format("{:.17g}, 0, {:.17g}", 1e-18 * std::sin(angle), 1e-18 * std::cos(angle)));
+    setup.set("particles_step", fmt::format("{:.17g}", end / (k == 0 ? 40 : 80)));
+    Charges run(setup);
+    run.engine.add({sphere(Vec3::Zero(), Vec3::Zero(), radius)});
+    run.engine.advance(0, end);
+    const double found = run.engine.store.columns.row(run.engine.store.columns.find("electric_moment"), 0)[0] / 1e-18;
+    // The period of a pendulum of this amplitude: 1 + angle^2/16.
+    error[k] = std::abs(found - angle * std::cos(omega * end / (1 + angle * angle / 16))) / angle;
+  }
+  CHECK(error[1] < 1e-3);
+  CHECK(error[0] / error[1] == Approx(4).epsilon(0.25));
+}
+
+TEST_CASE("Magnetic and electric forces act at once and add up", "[electric][mpi]") {
+  Charges run(electric("dc")
+                  .set("electric_coulomb", "yes")
+                  .set("electric_charge", "1e-15")
+                  .set("magnetic_type", "fixed")
+                  .set("magnetic_magnetisation", "1e4")
+                  .set("magnetic_direction", "0, 0, 1"));
+  run.engine.add({sphere(Vec3(-1e-5, 0, 0), Vec3::Zero(), radius), sphere(Vec3(1e-5, 0, 0), Vec3::Zero(), radius)});
+  run.engine.advance(0, 1e-15);
+  const double r = 2e-5, moment = 1e4 * pi / 6 * cube;
+  const double charges = 1e-30 / (4 * pi * vacuum_permittivity * r * r);
+  const double dipoles = 3 * vacuum_permeability * moment * moment / (4 * pi * r * r * r * r);  // side by side
+  CHECK(dipoles > 0.1 * charges);
+  CHECK(charges > 0.1 * dipoles);
+  for (int p = 0; p < run.engine.store.owned; ++p) {
+    const double sign = run.engine.store.id[p] == 0 ? -1 : 1;
+    CHECK((run.force(p) - sign * (charges + dipoles) * Vec3::UnitX()).norm() < 1e-9 * charges);
+  }
 }
 
 TEST_CASE("Electric options that lack something are refused", "[electric]") {

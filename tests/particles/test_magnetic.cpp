@@ -206,6 +206,68 @@ TEST_CASE("Two free magnets keep momentum and angular momentum, spin included, t
   CHECK(vec3(run.engine.store.rotation[0].spin).norm() != Approx(std::sqrt(10) * 1e5).epsilon(1e-3));
 }
 
+TEST_CASE("A magnet in a viscous fluid follows a turning field behind by arcsin(w/w_c), and slips beyond w_c",
+          "[magnetic]") {
+  // k_w dphi/dt = k_w w - mu0 m H sin(phi) for the angle phi behind: steady below w_c = mu0 m H/k_w; above it the
+  // magnet turns at w - (w^2 - w_c^2)^1/2 on average. Inertia: I/k_w = 3.3 ns, also far below the step.
+  const double torque = mu0 * moment * 1e4, friction = 8 * pi * 1e-3 * radius * radius * radius;
+  const double critical = torque / friction;
+  for (const double ratio : {0.5, 2.0})
+    for (const char* step : {"0", "1e-7"}) {
+      const double rate = ratio * critical, beat = std::sqrt(std::abs(rate * rate - critical * critical));
+      const double end = ratio < 1 ? 15 / critical : 3 * 2 * pi / beat;
+      BoxCase setup = magnets("permanent").set("magnetic_direction", "1, 0, 0");
+      setup.set("magnetic_field", fmt::format("1e4*cos({0:.17g}*t), 1e4*sin({0:.17g}*t), 0", rate));
+      setup.set("particles_step", step).set("particles_step_override", "yes");
+      Magnets run(setup);
+      run.engine.add({sphere(Vec3::Zero(), Vec3::Zero(), radius)});
+      run.engine.store.want_actions();
+      run.engine.store.action[0].spin_exchange = friction;
+      double turned = 0, before = 0;
+      constexpr int parts = 200;
+      for (int k = 0; k < parts; ++k) {
+        run.engine.advance(k * end / parts, end / parts);
+        const double now = std::atan2(run.moment_of(0)[1], run.moment_of(0)[0]);
+        turned += std::remainder(now - before, 2 * pi);
+        before = now;
+      }
+      INFO("w/w_c " << ratio << ", step " << step << ": turned by " << turned << " of " << rate * end);
+      if (ratio < 1) {
+        CHECK(run.engine.store.motion[0].spin[2] == Approx(rate).epsilon(2e-3));
+        CHECK(rate * end - turned == Approx(std::asin(ratio)).epsilon(0.02));
+      } else {
+        // After whole beats, from any angle.
+        CHECK(turned == Approx((rate - beat) * end).epsilon(0.02));
+      }
+    }
+}
+
+TEST_CASE("Saturated moments turn with the field at once, and the force on a soft sphere goes with its square",
+          "[magnetic]") {
+  const double rate = 2 * pi * 1e5;
+  Magnets pair(magnets("saturated").set("magnetic_field", "1e4*cos(2e5*pi*t), 0, 1e4*sin(2e5*pi*t)"));
+  pair.engine.add(pair_at(2.5 * radius * Vec3::UnitX()));
+  const double size = 3 * mu0 * moment * moment / (4 * pi * std::pow(2.5 * radius, 4));
+  for (auto& motion : {0, 1}) pair.engine.store.motion[motion].inverse_mass = 1e-9;  // nothing moves
+  Magnets soft(magnets("linear")
+                   .set("magnetic_susceptibility", "1.5")
+                   .set("magnetic_field", "(1e4 + 1e10*x)*cos(2e5*pi*t), 0, 0"));
+  soft.engine.add({sphere(Vec3::Zero(), Vec3::Zero(), radius)});
+  soft.engine.store.motion[0].inverse_mass = 1e-9;
+  for (int k = 0; k < 8; ++k) {
+    const double from = k * 0.7e-6, phase = rate * (from + 0.7e-6);
+    pair.engine.advance(from, 0.7e-6);
+    soft.engine.advance(from, 0.7e-6);
+    // On the second, b = x: 2 (m.b) m + (1 - 5 (m.b)^2) b, moments along (cos, 0, sin).
+    const double c = std::cos(phase), s = std::sin(phase);
+    const Vec3 expected = size * Vec3(2 * c * c + 1 - 5 * c * c, 0, 2 * c * s);
+    const int second = pair.position(0)[0] > 0 ? 0 : 1;
+    CHECK((pair.force(second) - expected).norm() < 1e-6 * size);
+    // mu0 chi V H dH/dx: never backwards, half of its largest value on average.
+    CHECK(soft.force(0)[0] == Approx(mu0 * 1.5 * volume * 1e4 * 1e10 * c * c).margin(1e-9 * mu0 * volume * 1e14));
+  }
+}
+
 TEST_CASE("Magnets in a viscous fluid and a uniform field form chains along it", "[magnetic][slow]") {
   const double side = 3e-6;
   BoxCase setup = magnets("saturated", side).set("magnetic_field", "0, 0, 1e5").periodic();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -47,7 +48,12 @@ Electric::Electric(const ElectricOptions& chosen, Options& options, const Mesh& 
   } else {
     real_ = chosen.polarisation == "conductivity" ? sphere.conducting() : sphere.insulating();
   }
-  charge_in_the_middle_ = (*charge_formula_)(0.5 * (mesh.lower + mesh.upper), 0);
+  range_ = field_.range(mesh.lower, mesh.upper);
+  for (int k = 0; k < 125; ++k) {
+    const Vec3 share = Vec3(k % 5, k / 5 % 5, k / 25) / 4;
+    largest_charge_ = std::max(
+        largest_charge_, std::abs((*charge_formula_)(mesh.lower + share.cwiseProduct(mesh.upper - mesh.lower), 0)));
+  }
   charge_ =
       columns.add({"charge", 1, GhostValues::none, true, [formula = charge_formula_](const Seed& seed, double* row) {
                      *row = (*formula)(seed.position, 0);
@@ -57,6 +63,7 @@ Electric::Electric(const ElectricOptions& chosen, Options& options, const Mesh& 
                            [dipole = chosen.dipole](const Seed&, double* row) { vec3(row) = dipole; }});
   if (chosen.solve)
     potential_ = std::make_unique<ElectricPotential>(mesh, options, permittivity_, chosen.charge_density);
+  if (potential_) range_.largest += potential_->strongest();
 }
 
 void Electric::repel(FieldStep& step) {
@@ -74,9 +81,12 @@ void Electric::repel(FieldStep& step) {
   }
 }
 
+void Electric::turn(Store& store, const double (*turned)[4]) {
+  if (turns()) turn_vectors(store.columns.values(moment_), turned, store.owned);
+}
+
 void Electric::act(FieldStep& step) {
   Store& store = step.store;
-  if (moment_ >= 0) turn_with_particles(store, step.dt, store.columns.values(moment_));
   const bool alternating = options_.type == "ac", uniform = field_.uniform();
   const Vec3 everywhere = uniform ? field_(Vec3::Zero(), step.time) : Vec3::Zero();
   for (int p = 0; p < store.owned; ++p) {
@@ -114,16 +124,21 @@ void Electric::act(FieldStep& step) {
 
 std::vector<StepBound> Electric::bounds(const Materials& materials, const SmallestRadii& smallest) const {
   std::vector<StepBound> bounds;
-  if (!options_.coulomb || charge_in_the_middle_ == 0) return bounds;
+  if (range_.rate > 0) bounds.push_back({pi / range_.rate, fmt::format("change of the {} field", "electric")});
   for (int a = 0; a < materials.count(); ++a) {
     const double radius = smallest.radius[a];
     if (radius >= infinity) continue;
     const double mass = *materials[a].density * 4.0 / 3.0 * pi * radius * radius * radius;
-    // In contact |dF/dr| = 2 F/r, r = d.
-    const double stiffness =
-        2 * charge_in_the_middle_ * charge_in_the_middle_ / (4 * pi * permittivity_ * std::pow(2 * radius, 3));
-    bounds.push_back(
-        {pi * std::sqrt(0.5 * mass / stiffness), fmt::format("electric force of {} in contact", materials[a].name)});
+    if (options_.coulomb && largest_charge_ > 0) {
+      // In contact |dF/dr| = 2 F/r, r = d.
+      const double stiffness =
+          2 * largest_charge_ * largest_charge_ / (4 * pi * permittivity_ * std::pow(2 * radius, 3));
+      bounds.push_back(
+          {pi * std::sqrt(0.5 * mass / stiffness), fmt::format("electric force of {} in contact", materials[a].name)});
+    }
+    if (const double torque = options_.dipole.norm() * range_.largest; moment_ >= 0 && torque > 0)
+      bounds.push_back({pi * std::sqrt(0.4 * mass * radius * radius / torque),
+                        fmt::format("electric swing of {}", materials[a].name)});
   }
   return bounds;
 }

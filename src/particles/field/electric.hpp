@@ -77,6 +77,8 @@ class Electric final : public ForceField {
   Electric(const ElectricOptions& chosen, Options& options, const Mesh& mesh, Columns& columns,
            const std::string& instructions);
   void act(FieldStep& step) override;
+  bool turns() const override { return moment_ >= 0; }
+  void turn(Store& store, const double (*turned)[4]) override;
   std::vector<StepBound> bounds(const Materials& materials, const SmallestRadii& smallest) const override;
   std::vector<std::string> warnings(const Materials& materials, const SmallestRadii& smallest) const override {
     return cutoff_warnings("electric_cutoff", options_.coulomb ? options_.cutoff : 0, 2, materials, smallest);
@@ -90,9 +92,10 @@ class Electric final : public ForceField {
 
   ElectricOptions options_;
   GivenField field_;
+  FieldRange range_;                              ///< V/m, of the given field and the one solved for
   std::unique_ptr<ElectricPotential> potential_;  ///< null: the field is given
   std::shared_ptr<Expression> charge_formula_;
-  double permittivity_, real_ = 0, imaginary_ = 0, charge_in_the_middle_ = 0;
+  double permittivity_, real_ = 0, imaginary_ = 0, largest_charge_ = 0;  ///< largest: C, as sampled
   int charge_ = -1, moment_ = -1;
   const PairKernels& kernels_;
   PairSources sources_;

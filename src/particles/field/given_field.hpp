@@ -5,6 +5,12 @@
 
 namespace silt {
 
+/// What the time step must know of a field.
+struct FieldRange {
+  double largest = 0;  ///< in the field's unit
+  double rate = 0;  ///< 1/s, the largest change in time over the largest size: 2 pi f of one that turns or alternates
+};
+
 /// A vector field given by formulas in x, y, z, t, with its gradient by central differences (of fourth order, so that
 /// fields up to cubic ones are exact to round-off).
 class GivenField {
@@ -12,6 +18,8 @@ class GivenField {
   /// `extent`: m, of the domain: the differences are taken over a share of it.
   GivenField(const std::string& option, const std::string& text, double extent)
       : formula_(option, text), step_(1e-3 * extent) {}
+  /// Its largest size and how fast it changes, sampled over places in the box [lower, upper] and times of all scales.
+  FieldRange range(const Vec3& lower, const Vec3& upper) const;
   bool uniform() const { return formula_.uniform(); }
   Vec3 operator()(const Vec3& x, double t) const { return formula_(x, t); }
   /// gradient(k, d) = dH_k/dx_d.

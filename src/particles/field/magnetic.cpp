@@ -24,18 +24,6 @@ std::string formulas(const MagneticOptions& options) {
   return options.flux_density.empty() ? "0, 0, 0" : options.flux_density;
 }
 
-/// The largest size of a field over a grid of places in the mesh and some times.
-double sampled(const GivenField& field, const Mesh& mesh) {
-  double largest = 0;
-  for (const double time : {0.0, 1e-5, 3.7e-4, 1.3e-3, 7.1e-3, 0.043, 0.21, 0.87, 1.9, 11.0})
-    for (int k = 0; k < 125; ++k) {
-      const Vec3 share(k % 5 / 4.0, k / 5 % 5 / 4.0, k / 25 / 4.0);
-      const Vec3 x = mesh.lower + share.cwiseProduct(mesh.upper - mesh.lower);
-      largest = std::max(largest, field(x, time).norm());
-    }
-  return largest;
-}
-
 }  // namespace
 
 std::unique_ptr<Magnetic> Magnetic::create(Options& options, const Mesh& mesh, Columns& columns,
@@ -57,7 +45,7 @@ Magnetic::Magnetic(MagneticModels::Any model, const MagneticOptions& options, co
       field_(options.field.empty() ? "magnetic_flux_density" : "magnetic_field", formulas(options),
              (mesh.upper - mesh.lower).norm()),
       scale_(options.flux_density.empty() ? 1 : 1 / vacuum_permeability),
-      strongest_(scale_ * sampled(field_, mesh)),
+      range_(field_.range(mesh.lower, mesh.upper)),
       kernels_(choose_pair_kernels(instructions.c_str())) {
   const bool starts = follows_ == MomentFollows::body || follows_ == MomentFollows::nothing;
   ColumnRequest request{"magnetic_moment", 3, GhostValues::none, true, {}};
@@ -124,10 +112,13 @@ void Magnetic::find_moments(FieldStep& step, double* moment) {
                   options_.tolerance, options_.iterations));
 }
 
+void Magnetic::turn(Store& store, const double (*turned)[4]) {
+  if (turns()) turn_vectors(store.columns.values(column_), turned, store.owned);
+}
+
 void Magnetic::act(FieldStep& step) {
   Store& store = step.store;
   double* moment = store.columns.values(column_);
-  if (follows_ == MomentFollows::body) turn_with_particles(store, step.dt, moment);
   if (follows_ == MomentFollows::applied) apply(step, moment);
   sources_.gather(store, moment, 3, step.communicator);
   if (options_.cutoff > 0) sources_.sort(step.periods, options_.cutoff);
@@ -161,12 +152,14 @@ void Magnetic::act(FieldStep& step) {
 
 std::vector<StepBound> Magnetic::bounds(const Materials& materials, const SmallestRadii& smallest) const {
   std::vector<StepBound> bounds;
+  const double strongest = scale_ * range_.largest;
+  if (range_.rate > 0) bounds.push_back({pi / range_.rate, fmt::format("change of the {} field", "magnetic")});
   for (int a = 0; a < materials.count(); ++a) {
     const double radius = smallest.radius[a];
     if (radius >= infinity) continue;
     const double volume = volume_of(radius), mass = *materials[a].density * volume;
     const double moment = std::visit(
-        [&](const auto& m) { return std::max(m.largest(volume), m.moment(Vec3(strongest_, 0, 0), volume).norm()); },
+        [&](const auto& m) { return std::max(m.largest(volume), m.moment(Vec3(strongest, 0, 0), volume).norm()); },
         model_);
     if (!(moment > 0)) continue;
     // Head to tail in contact: F = 3 mu0 m^2/(2 pi r^4), |dF/dr| = 4 F/r at r = d; half a period of the pair's mass.
@@ -175,7 +168,7 @@ std::vector<StepBound> Magnetic::bounds(const Materials& materials, const Smalle
     bounds.push_back({pi * std::sqrt(0.5 * mass / stiffness),
                       fmt::format("magnetic attraction of {} in contact", materials[a].name)});
     if (follows_ != MomentFollows::body) continue;
-    const double field = strongest_ + 2 * moment / (4 * pi * std::pow(distance, 3));
+    const double field = strongest + 2 * moment / (4 * pi * std::pow(distance, 3));
     const double inertia = 0.4 * mass * radius * radius;
     bounds.push_back({pi * std::sqrt(inertia / (vacuum_permeability * moment * field)),
                       fmt::format("magnetic swing of {}", materials[a].name)});

@@ -52,6 +52,8 @@ class Magnetic final : public ForceField {
   Magnetic(MagneticModels::Any model, const MagneticOptions& options, const Mesh& mesh, Columns& columns,
            const std::string& instructions);
   void act(FieldStep& step) override;
+  bool turns() const override { return follows_ == MomentFollows::body; }
+  void turn(Store& store, const double (*turned)[4]) override;
   std::vector<StepBound> bounds(const Materials& materials, const SmallestRadii& smallest) const override;
   std::vector<std::string> warnings(const Materials& materials, const SmallestRadii& smallest) const override {
     return cutoff_warnings("magnetic_cutoff", options_.cutoff, 4, materials, smallest);
@@ -69,7 +71,7 @@ class Magnetic final : public ForceField {
   MomentFollows follows_;
   GivenField field_;
   double scale_;      ///< from what the user gave to A/m
-  double strongest_;  ///< A/m, of the applied field, as sampled
+  FieldRange range_;  ///< of field_, in what the user gave
   int column_;
   const PairKernels& kernels_;
   PairSources sources_;

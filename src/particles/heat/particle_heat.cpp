@@ -15,15 +15,15 @@ std::unique_ptr<ParticleHeat> ParticleHeat::create(Options& options, const Mater
   HeatOptions chosen;
   options.read("heat", chosen);
   if (!chosen.particles) return nullptr;
-  for (int m = 0; m < materials.count(); ++m) {
-    if (!materials[m].heat_capacity)
-      throw UserError(
-          fmt::format("-material_{}_heat_capacity is missing: -heat_particles needs it", materials[m].name));
-    if (chosen.conduction && !materials[m].conductivity)
-      throw UserError(
-          fmt::format("-material_{}_conductivity is missing: -heat_conduction needs it", materials[m].name));
-  }
   return std::make_unique<ParticleHeat>(chosen, materials, columns);
+}
+
+void ParticleHeat::check(int material) const {
+  const Material& m = materials_[material];
+  if (!m.heat_capacity)
+    throw UserError(fmt::format("-material_{}_heat_capacity is missing: -heat_particles needs it", m.name));
+  if (options_.conduction && !m.conductivity)
+    throw UserError(fmt::format("-material_{}_conductivity is missing: -heat_conduction needs it", m.name));
 }
 
 ParticleHeat::ParticleHeat(const HeatOptions& options, const Materials& materials, Columns& columns)

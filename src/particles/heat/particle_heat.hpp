@@ -56,10 +56,13 @@ struct HeatOptions {
 /// "heat_received" (J) from the fluid since somebody reset it.
 class ParticleHeat {
  public:
-  /// Null unless `-heat_particles yes`. Throws UserError for a material without heat capacity.
+  /// Null unless `-heat_particles yes`.
   static std::unique_ptr<ParticleHeat> create(Options& options, const Materials& materials, Columns& columns);
   ParticleHeat(const HeatOptions& options, const Materials& materials, Columns& columns);
 
+  /// Throws UserError where particles of this material cannot have a temperature; one of walls alone needs no heat
+  /// capacity.
+  void check(int material) const;
   /// Moves the temperatures of this rank's particles on by dt, up to `time`.
   void advance(Store& store, const ContactLists& contacts, const Periods& periods, double time, double dt);
   /// J/K, m c_p of a particle.
