@@ -78,10 +78,10 @@ void each_encounter(const Materials& materials, const ParticleSizes& sizes, Act&
     for (const auto* radius : {&sizes.smallest, &sizes.largest})
       for (int b = 0; b < materials.count(); ++b) {
         const double ra = (*radius)[a], rb = (*radius)[b], mass = mass_of(materials[a], ra);
-        act(a, b, Encounter{mass, ra, ra, 0, ra});
+        act(a, b, meeting(mass, ra, infinity, infinity, 0));
         if (!(sizes.largest[b] > 0)) continue;
         const double other = mass_of(materials[b], rb);
-        act(a, b, Encounter{mass * other / (mass + other), ra * rb / (ra + rb), ra + rb, 0, ra});
+        act(a, b, meeting(mass, ra, other, rb, 0));
       }
   }
 }
@@ -276,6 +276,25 @@ std::vector<LawDuration> ContactLaws::pull_durations(int a, int b, const Encount
   add("bridge", bridge_.model);
   add("interfacial", interfacial_.model);
   add("lubrication", lubrication_.model);
+  return result;
+}
+
+std::vector<LawDuration> ContactLaws::swing_durations(int a, int b, const Encounter& encounter) const {
+  std::vector<LawDuration> result;
+  const auto add = [&](const char* slot, const auto& resists) {
+    std::visit(
+        [&](const auto& model) {
+          using Model = std::decay_t<decltype(model)>;
+          const auto constants = model.constants(pair(a, b));
+          if constexpr (requires { Model::swing(constants, encounter); })
+            if (const double time = Model::swing(constants, encounter); time < infinity)
+              result.push_back({fmt::format("{} {}", slot, model.name), time});
+        },
+        resists);
+  };
+  add("tangential", tangential_.model);
+  add("rolling", rolling_.model);
+  add("twisting", twisting_.model);
   return result;
 }
 

@@ -63,6 +63,9 @@ class ContactLaws {
   double duration(int a, int b, const Encounter& encounter) const;
   /// The same for the forces beside the normal law.
   std::vector<LawDuration> pull_durations(int a, int b, const Encounter& encounter) const;
+  /// Half a swing of the springs of friction, rolling and twisting whose stiffness is given: those that follow from the
+  /// normal law are never stiffer than it.
+  std::vector<LawDuration> swing_durations(int a, int b, const Encounter& encounter) const;
   /// True where waves in the particles limit the step too (Hertz family).
   bool hertzian() const;
 

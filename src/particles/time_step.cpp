@@ -30,14 +30,8 @@ StepLimit limit_step(const ParticleOptions& options, const Materials& materials,
     for (int b = 0; b < materials.count(); ++b) {
       // Any material may be that of a wall, which is as a partner of infinite mass and radius.
       const double other = smallest.radius[b] < infinity ? smallest.radius[b] : infinity;
-      double share = 1, radii = radius, distance = radius;
-      if (other < infinity) {
-        const double other_mass = *materials[b].density * 4.0 / 3.0 * std::numbers::pi * other * other * other;
-        share = other_mass / (mass + other_mass);
-        radii = radius * other / (radius + other);
-        distance = radius + other;
-      }
-      const Encounter encounter{share * mass, radii, distance, speed, radius};
+      const double other_mass = *materials[b].density * 4.0 / 3.0 * std::numbers::pi * other * other * other;
+      const Encounter encounter = meeting(mass, radius, other_mass, other, speed);
       const double duration = laws.duration(a, b, encounter);
       lower(options.step_fraction * duration,
             fmt::format("{:.3g} of the collision time {:.3g} s of {} with {}{}", options.step_fraction, duration,
@@ -47,6 +41,11 @@ StepLimit limit_step(const ParticleOptions& options, const Materials& materials,
         lower(options.step_fraction * time,
               fmt::format("{:.3g} of half an oscillation {:.3g} s by {} of {} with {}", options.step_fraction, time,
                           law, material.name, materials[b].name));
+      // Friction's springs decide over no restitution: twice the step.
+      for (const auto& [law, time] : laws.swing_durations(a, b, encounter))
+        lower(2 * options.step_fraction * time,
+              fmt::format("{:.3g} of half a swing {:.3g} s by {} of {} with {}", 2 * options.step_fraction, time, law,
+                          material.name, materials[b].name));
     }
   }
   for (const StepBound& other : others)

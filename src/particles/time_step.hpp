@@ -26,7 +26,8 @@ struct StepBound {
 
 /// Smallest of: a share of the shortest collision (of the chosen normal law, at `speed`, over all pairs of materials,
 /// walls included), the same share of the oscillation with the steepest slope of every other force along the line of
-/// centres (adhesion, double layers), and for the Hertz family a share of the Rayleigh time t_R = pi R sqrt(rho/G) /
+/// centres (adhesion, double layers), twice that share of the swing of springs that are given to friction, rolling and
+/// twisting, and for the Hertz family a share of the Rayleigh time t_R = pi R sqrt(rho/G) /
 /// (0.1631 s + 0.8766), Li et al. 2005.
 StepLimit limit_step(const ParticleOptions& options, const Materials& materials, const ContactLaws& laws,
                      const SmallestRadii& smallest, double speed, const std::vector<StepBound>& others = {});

@@ -118,6 +118,49 @@ TEST_CASE("The step takes the attraction at an interface and lubrication", "[par
         pi * pair_mass / (6 * pi * 1e-3 * pair_radius * pair_radius / 1e-7), "lubrication squeeze", 1e-2);
 }
 
+TEST_CASE("The step takes given springs and dashpots of friction, rolling and twisting, a tenth of half their swing",
+          "[particles]") {
+  const double slip_mass = pair_mass / 3.5, rolling_inertia = 0.7 * mass * radius * radius;
+  const double twisting_inertia = 0.2 * mass * radius * radius;
+  const auto swing = [](double inertia, double stiffness) { return 2 * pi * std::sqrt(inertia / stiffness); };
+  const auto brake = [](double inertia, double damping) { return 2 * pi * inertia / damping; };
+  for (const std::string friction : {"spring", "spring_dashpot"})
+    check({{"tangential_type", friction}, {"tangential_stiffness", "1e4"}}, swing(slip_mass, 1e4),
+          "tangential " + friction);
+  check({{"tangential_type", "spring_dashpot"}, {"tangential_stiffness", "1"}, {"tangential_damping", "1"}},
+        brake(slip_mass, 1), "tangential spring_dashpot");
+  check({{"tangential_type", "viscous"}, {"tangential_damping", "1"}}, brake(slip_mass, 1), "tangential viscous");
+  check({{"rolling_type", "spring"}, {"rolling_stiffness", "1e4"}}, swing(rolling_inertia, 1e4 * pair_radius),
+        "rolling spring");
+  check({{"rolling_type", "spring"}, {"rolling_stiffness", "1e-3"}, {"rolling_damping", "1"}},
+        brake(rolling_inertia, pair_radius), "rolling spring");
+  check({{"twisting_type", "twisting"}, {"twisting_stiffness", "1"}}, swing(twisting_inertia, 1), "twisting twisting");
+  check({{"twisting_type", "twisting"}, {"twisting_stiffness", "1e-6"}, {"twisting_damping", "1e-4"}},
+        brake(twisting_inertia, 1e-4), "twisting twisting");
+  // A spring of friction no stiffer than the normal one leaves the step to the collision.
+  check({{"normal_stiffness", "1e4"}, {"tangential_type", "spring"}, {"tangential_stiffness", "1e4"}},
+        half_oscillation(1e4), "collision time");
+}
+
+TEST_CASE("The step takes the swing of an electric dipole and fields that turn or alternate, whatever their frequency",
+          "[particles]") {
+  check({{"electric_type", "dc"}, {"electric_dipole", "0, 0, 1e-9"}, {"electric_field", "0, 0, 1e9"}},
+        pi * std::sqrt(0.4 * mass * radius * radius / (1e-9 * 1e9)), "electric swing");
+  for (const double frequency : {50.0, 1e5, 3.7e8}) {
+    // 40 steps a period.
+    const std::string phase = "2*pi*" + std::to_string(frequency) + "*t";
+    const std::string turning = "1e4*cos(" + phase + "), 1e4*sin(" + phase + "), 0";
+    const std::string swinging = "0, 1e4*cos(" + phase + "), 0", late = "0, 0, 1e4*sin(" + phase + ")";
+    for (const std::string& field : {turning, swinging, late}) {
+      INFO(field);
+      check({{"magnetic_type", "fixed"}, {"magnetic_magnetisation", "1e-3"}, {"magnetic_field", field}},
+            0.5 / frequency, "change of the magnetic field", field == turning ? 1e-3 : 0.1);
+      check({{"electric_type", "dc"}, {"electric_field", field}}, 0.5 / frequency, "change of the electric field",
+            field == turning ? 1e-3 : 0.1);
+    }
+  }
+}
+
 TEST_CASE("The step takes dipoles and charges in contact, and the swing of a magnet", "[particles]") {
   const double volume = 4.0 / 3 * pi * radius * radius * radius, moment = 1e6 * volume, d = 2 * radius;
   check({{"magnetic_type", "fixed"}, {"magnetic_magnetisation", "1e6"}},
@@ -125,8 +168,9 @@ TEST_CASE("The step takes dipoles and charges in contact, and the swing of a mag
   const double field = 1e9 + 2 * moment / (4 * pi * d * d * d);
   check({{"magnetic_type", "permanent"}, {"magnetic_magnetisation", "1e6"}, {"magnetic_field", "0, 0, 1e9"}},
         pi * std::sqrt(0.4 * mass * radius * radius / (vacuum_permeability * moment * field)), "magnetic swing");
-  check({{"electric_type", "dc"}, {"electric_coulomb", "yes"}, {"electric_charge", "1e-9"}},
-        half_oscillation(2 * 1e-18 / (4 * pi * vacuum_permittivity * d * d * d)), "electric force");
+  for (const char* charge : {"1e-9", "x > 1e-3 ? -1e-9 : 0"})
+    check({{"electric_type", "dc"}, {"electric_coulomb", "yes"}, {"electric_charge", charge}},
+          half_oscillation(2 * 1e-18 / (4 * pi * vacuum_permittivity * d * d * d)), "electric force");
 }
 
 TEST_CASE("Brownian motion counts with three times its thermal speed, and conduction of heat limits the step",

@@ -1,4 +1,9 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/options.hpp"
 
 namespace silt {
 
@@ -15,11 +20,30 @@ struct NormalLoad {
 
 /// Two bodies that meet, for estimates of durations.
 struct Encounter {
-  double mass;      ///< kg, effective
-  double radius;    ///< m, effective
-  double distance;  ///< m, R_i + R_j, at a wall R_i
-  double speed;     ///< m/s, of approach
-  double radius_i;  ///< m
+  double mass;             ///< kg, effective
+  double radius;           ///< m, effective
+  double distance;         ///< m, R_i + R_j, at a wall R_i
+  double speed;            ///< m/s, of approach
+  double radius_i;         ///< m
+  double rolling_inertia;  ///< kg m2, as of Contact
 };
+
+/// A sphere of mass m_i and radius R_i and another one, or a wall of infinite mass and radius.
+inline Encounter meeting(double mass_i, double radius_i, double mass_j, double radius_j, double speed) {
+  const auto half = [](double i, double j) { return j < infinity ? i * j / (i + j) : i; };
+  return {half(mass_i, mass_j),
+          half(radius_i, radius_j),
+          radius_j < infinity ? radius_i + radius_j : radius_i,
+          speed,
+          radius_i,
+          half(1.4 * mass_i * radius_i * radius_i, 1.4 * mass_j * radius_j * radius_j)};
+}
+
+/// Half a swing of a spring on an inertia, or what an explicit step must resolve of a dashpot: the shorter. What
+/// neither holds takes for ever. kg or kg m2; N/m or N m; kg/s or N m s; s
+inline double swing_duration(double inertia, double stiffness, double damping) {
+  const double spring = stiffness > 0 ? std::numbers::pi * std::sqrt(inertia / stiffness) : infinity;
+  return damping > 0 ? std::min(spring, std::numbers::pi * inertia / damping) : spring;
+}
 
 }  // namespace silt

@@ -80,6 +80,11 @@ struct SpringRolling {
     torque[1] = n[2] * moment[0] - n[0] * moment[2];
     torque[2] = n[0] * moment[1] - n[1] * moment[0];
   }
+
+  /// Half a swing of a ball that rocks on the stiffness given; a neck's is softer than its normal force. s
+  static double swing(const Constants<double>& c, const Encounter& e) {
+    return swing_duration(e.rolling_inertia, c.stiffness * e.radius, c.damping * e.radius);
+  }
 };
 
 }  // namespace silt

@@ -43,6 +43,11 @@ struct SpringTangential {
     limited_spring_dashpot(contact, normal.force, c.friction, c.stiffness, Real(0.0), c.least_share, dt, history.spring,
                            force);
   }
+
+  /// Half a swing of a stuck contact, whose slip answers to a force as a mass of 2/7 m_eff. s
+  static double swing(const Constants<double>& c, const Encounter& e) {
+    return swing_duration(e.mass / 3.5, c.stiffness, 0);
+  }
 };
 
 }  // namespace silt

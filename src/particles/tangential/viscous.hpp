@@ -47,6 +47,11 @@ struct ViscousTangential {
     const Real share = smaller(full, c.friction * magnitude(normal.force)) / larger(speed, least);
     for (int d = 0; d < 3; ++d) force[d] = zero - share * contact.slip[d];
   }
+
+  /// Half a swing of a stuck contact, whose slip answers to a force as a mass of 2/7 m_eff. s
+  static double swing(const Constants<double>& c, const Encounter& e) {
+    return swing_duration(e.mass / 3.5, 0, c.damping);
+  }
 };
 
 }  // namespace silt

@@ -65,6 +65,11 @@ struct Twisting {
     history.angle = history.angle + dt * rate - cut;
     return zero - kept;
   }
+
+  /// Half a swing on the stiffness and dashpot given; those of the contact's radius are softer than its normal force. s
+  static double swing(const Constants<double>& c, const Encounter& e) {
+    return swing_duration(e.rolling_inertia / 3.5, c.stiffness, c.damping);
+  }
 };
 
 }  // namespace silt
