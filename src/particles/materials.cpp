@@ -76,15 +76,4 @@ Materials::Materials(Options& options) {
   }
 }
 
-int Materials::index(const std::string& name, const std::string& origin) const {
-  std::vector<std::string> known;
-  for (int i = 0; i < count(); ++i) {
-    if (materials_[i].name == name) return i;
-    known.push_back(materials_[i].name);
-  }
-  throw UserError(fmt::format(
-      "{}: there is no material {}; materials are {}", origin, name,
-      known.empty() ? "not given (-material_<name>_density ...)" : fmt::format("{}", fmt::join(known, ", "))));
-}
-
 }  // namespace silt

@@ -71,8 +71,6 @@ class Materials {
 
   int count() const { return static_cast<int>(materials_.size()); }
   const Material& operator[](int i) const { return materials_[i]; }
-  /// Index of a named material; throws UserError naming `origin` (the option that asked) and the known ones.
-  int index(const std::string& name, const std::string& origin) const;
   /// Symmetric in a and b.
   const PairProperties& pair(int a, int b) const { return pairs_[a * count() + b]; }
   /// The first option by which the user gave a restitution, "" where all are the default.
