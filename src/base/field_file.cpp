@@ -81,6 +81,11 @@ void FieldFile::read_mesh() {
   const auto cells = read_all<std::int64_t>(mesh, "cells", H5T_NATIVE_INT64, corners);
   if (mpi_any(points_.empty() || cells.empty() || three != 3))
     refuse(fmt::format("is no output of a fluid: its mesh {} cannot be read", mesh));
+  const auto nodes = static_cast<std::int64_t>(points_.size() / 3);
+  const auto strange = [&](std::int64_t node) { return node < 0 || node >= nodes; };
+  const bool known = corners == 3 || corners == 4 || corners == 8;
+  if (mpi_any(!known || std::any_of(cells.begin(), cells.end(), strange)))
+    refuse(fmt::format("is damaged: the cells of its mesh {} have nodes that are not there", mesh));
   corners_ = corners;
   double depth = 0;
   for (std::size_t k = 2; k < points_.size(); k += 3) depth = std::max(depth, std::abs(points_[k]));

@@ -3,6 +3,7 @@
 """Flows that start from an earlier run on another mesh, with their turbulence, from a potential flow and from a Stokes flow."""
 import csv
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -71,6 +72,14 @@ with tempfile.TemporaryDirectory() as folder:
     expect(done.returncode == 2 and "exclude each other" in done.stdout, f"two starts are refused: {done.stdout[-300:]}")
     done = run(folder, out="none", fluid=", initial_file: out/fluid/999999.h5")
     expect(done.returncode == 2 and "does not exist" in done.stdout, f"a missing file is refused: {done.stdout[-300:]}")
+    for name, spoil in (("far", lambda cells: cells + 10**7), ("negative", lambda cells: -cells)):
+        os.makedirs(os.path.join(folder, name, "fluid"))
+        shutil.copy(os.path.join(folder, start), os.path.join(folder, name, "fluid"))
+        shutil.copy(os.path.join(folder, "out", "fluid", "mesh.h5"), os.path.join(folder, name, "fluid"))
+        with h5py.File(os.path.join(folder, name, "fluid", "mesh.h5"), "r+") as file:
+            file["cells"][...] = spoil(file["cells"][...])
+        done = run(folder, out="damaged", fluid=f", initial_file: {name}/fluid/{files[-1]}")
+        expect(done.returncode == 2 and "is damaged" in done.stdout, f"node numbers that are {name} are refused: {done.stdout[-300:]}")
     done = run(folder, out="cold", fluid=f", initial_file: {start}" + ENERGY.replace("energy: yes", "energy: no"))
     expect(done.returncode == 2, "energy options without energy are refused")
 
