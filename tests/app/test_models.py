@@ -34,7 +34,7 @@ LAWS = {
     "brownian": "inertial overdamped",
     "virtual_mass": "sphere",
     "coupling": "pressure_gradient viscous_stress buoyancy",
-    "heat": "source conduction radiation",
+    "heat": "convection source conduction radiation",
 }
 # What a fluid does to particles, which a case must verify in a prescribed flow and another in one that is solved for.
 IN_FLOWS = ("drag", "saffman", "magnus", "viscous_torque", "thermophoresis", "dispersion", "virtual_mass", "coupling")

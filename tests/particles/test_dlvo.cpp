@@ -79,6 +79,9 @@ TEST_CASE("The double-layer force is minus the slope of its potential; unlike su
     const double h = 1e-4 * gap;
     CHECK(pull(run, gap, 1e-6, 1e-6) == Approx(-(potential(gap + h) - potential(gap - h)) / (2 * h)).epsilon(1e-6));
   }
+  // Unlike radii: 2 R_eff in place of R; at a wall 2 R.
+  CHECK(pull(run, 1e-8, 1e-6, 0.25e-6) == Approx(0.4 * pull(run, 1e-8, 1e-6, 1e-6)));
+  CHECK(pull(run, 1e-8, 1e-6, 0) == Approx(2 * pull(run, 1e-8, 1e-6, 1e-6)));
   // Hogg, Healy & Fuerstenau: with potentials of one sign and unlike size the force turns to attraction.
   const double squares = 0.03 * 0.03 + 0.01 * 0.01, turn = length * std::log(squares / (2 * 0.03 * 0.01));
   CHECK(double_layer_force(1.0, 3e-4, squares, 1 / length, 1.01 * turn, 1.0) > 0);

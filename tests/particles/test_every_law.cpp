@@ -185,6 +185,38 @@ TEST_CASE("No law of the normal force makes energy over an approach and a retrea
   });
 }
 
+TEST_CASE("No law of friction, rolling or twisting makes energy over whole swings to and fro, however wide",
+          "[particles]") {
+  each_law([&](const char* slot, const std::string& name) {
+    const std::string kind = slot;
+    if ((kind != "tangential" && kind != "rolling" && kind != "twisting") || name == "none") return;
+    for (const double width : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4}) {  // m of slip, from stuck to sliding
+      INFO(slot << " " << name << " width " << width);
+      const LawRun run(LawCase().choose("normal", "linear").choose(slot, name), 1e-3, 1e-3);
+      std::vector<double> history(run.laws.history_components() + 1);
+      Contact<double> contact{};
+      contact.normal[2] = 1;
+      contact.overlap = 5e-6, contact.effective_radius = 0.5e-3, contact.effective_mass = 1e-6, contact.radius = 1e-3;
+      contact.distance = 2e-3 - 5e-6, contact.rolling_inertia = 1e-12;
+      const double rate = 2e4, dt = 1e-7;
+      const int period = static_cast<int>(std::lround(6.283185307179586 / (rate * dt)));
+      double work = 0, exchanged = 0;
+      for (int k = 0; k < 4 * period; ++k) {
+        const double speed = width * rate * std::cos(2 * 3.141592653589793 * (k + 0.5) / period);
+        contact.slip[0] = kind == "tangential" ? speed : 0;
+        contact.spin[1] = kind == "rolling" ? speed / 0.5e-3 : 0;
+        contact.spin[2] = kind == "twisting" ? speed / 0.5e-3 : 0;
+        const Loads loads = loads_of(run.laws, contact, run.laws.pair(0, 0), 0, 0, dt, history.data());
+        const double power = -(loads.force[0] * contact.slip[0] + loads.torque_i[1] * contact.spin[1] +
+                               loads.torque_i[2] * contact.spin[2]);
+        work += power * dt, exchanged += std::abs(power) * dt;
+      }
+      CHECK(exchanged > 0);
+      CHECK(work > -1e-3 * exchanged);  // what an elastic spring gives back it was given, to the reading within a step
+    }
+  });
+}
+
 TEST_CASE("A free pair keeps its momentum and angular momentum under every law", "[particles]") {
   each_law([&](const char* slot, const std::string& name) {
     INFO(slot << " " << name);

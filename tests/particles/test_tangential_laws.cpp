@@ -111,6 +111,20 @@ TEST_CASE("Walton-Braun friction follows the closed form of first loading, unloa
   CHECK(contact.slip(-1, 10)[0] == Approx(limit));
 }
 
+TEST_CASE("Walton-Braun friction scales the force of the last reversal with the normal force", "[particles]") {
+  Sheared contact(walton());
+  contact.slip(0, 1);
+  const double stiffness = contact.k * 0.7 / 0.85, limit = contact.limit;
+  const double top = -contact.slip(0.8 * limit / stiffness, 4)[0];
+  const double before = -contact.slip(-0.1 * limit / stiffness, 4)[0];
+  CHECK(before < top);
+  contact.contact.overlap *= 2;  // twice the load: F* is twice what it was
+  const double after = -contact.slip(-0.3 * limit / stiffness, 3)[0];
+  const double room = 2 * limit + 2 * top, passed = (2 * top - before) / room;
+  const double left = std::pow(1 - passed, 2.0 / 3.0) - 2.0 / 3.0 * stiffness * 0.3 * limit / stiffness / room;
+  CHECK(after == Approx(2 * top - room * (1 - std::pow(left, 1.5))).epsilon(1e-9));
+}
+
 TEST_CASE("Walton-Braun friction answers displacement across the force with its first stiffness", "[particles]") {
   Sheared contact(walton());
   contact.slip(0, 1);

@@ -12,10 +12,12 @@ namespace silt {
 /// sphere, which follows from n: found by iteration.
 struct MazzaDrag {
   static constexpr const char* name = "mazza";
-  static constexpr ModelNote note = {"", "Mazzei & Lettieri 2007; Rowe 1987",
-                                     "k = V 3/4 C_D(Re*) a rho |u-v|/d a^(2 - 2n), C_D of Dallavalle, n = (4.8 + 0.42 "
-                                     "Re*^0.75)/(1 + 0.175 Re*^0.75), Re* = Re/a^n, Re = a rho d |u-v|/mu",
-                                     "settling by Richardson & Zaki's law; terminal velocity"};
+  static constexpr ModelNote note = {
+      "", "Mazzei & Lettieri 2007; Rowe 1987",
+      "k = V 3/4 C_D(Re*) a rho |u-v|/d a^(2 - 2n), C_D of Dallavalle, n = (4.8 + 0.42 "
+      "Re*^0.75)/(1 + 0.175 Re*^0.75), Re* = Re/a^n, Re = a rho d |u-v|/mu",
+      "settling by Richardson & Zaki's law, its definition; a^-3.8 in slow and fast flow (Gibilaro et "
+      "al. 1985); terminal velocity; not against the paper, which was not at hand"};
   void options(OptionGroup&) {}
   /// Exponent of Richardson & Zaki at the Reynolds number of the single sphere's terminal velocity.
   static double exponent(double reynolds) {
