@@ -3,6 +3,7 @@
 """ParaView opens both series of a coupled run, on two ranks, hexahedra and tetrahedra: times, counts, arrays, numbers; and the tables are whole."""
 import csv
 import json
+import math
 import os
 import subprocess
 import sys
@@ -64,6 +65,9 @@ def check_tables(folder, label):
     expect(abs(float(diagnostics[-1]["time"]) - TIMES[-1]) < 1e-12, f"{label}: diagnostics end at {diagnostics[-1]['time']}")
     expect(diagnostics[0]["particles"] == "28" and diagnostics[-1]["particles"] == "27", f"{label}: particles in diagnostics: {[row['particles'] for row in diagnostics]}")
     expect(diagnostics[-1]["removed"] == "1", f"{label}: removed {diagnostics[-1]['removed']}")
+    gone = rows(folder, "removed.csv")
+    expect(len(gone) == 1 and gone[0]["id"] == "27" and 0.04 <= float(gone[0]["position_z"]) < 0.042 and abs(float(gone[0]["velocity_z"]) - 2) < 0.1
+           and abs(float(gone[0]["mass"]) / (1000 * math.pi / 6 * 1e-9) - 1) < 1e-9, f"{label}: removed.csv has {gone}")
     expect(max(float(row["residual"]) for row in rows(folder, "ledger.csv")) < 1e-10, f"{label}: ledger residual")
     # Before the first step the line crosses the inlet's velocity and the initial one, which meets continuity: the nodes inside
     # of a section carry all of the flow, with 4/9 of its area (2/3 between two walls).
