@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/solver_defaults.hpp"
 
 namespace silt {
 namespace {
@@ -25,15 +26,6 @@ constexpr double kept = 2 * loosest;
 constexpr int longest_factor_age = 10;
 constexpr double most_growth = 1.3;
 
-bool option_given(const std::string& name) {
-  PetscBool found = PETSC_FALSE;
-  SILT_PETSC(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &found));
-  return found;
-}
-void default_option(const std::string& name, const char* value) {
-  if (!option_given(name)) SILT_PETSC(PetscOptionsSetValue(nullptr, name.c_str(), value));
-}
-
 }  // namespace
 
 NewtonSolver::NewtonSolver(const FlowSystem& system, const std::string& pressure_stage)
@@ -41,8 +33,8 @@ NewtonSolver::NewtonSolver(const FlowSystem& system, const std::string& pressure
   residual_ = system.create_vector();
   start_ = system.create_vector();
   SILT_PETSC(VecGetSize(start_, &rows_));
-  tolerance_given_ = option_given("-fluid_snes_atol");
-  linear_floor_given_ = option_given("-fluid_ksp_atol");
+  tolerance_given_ = solver_option_given("-fluid_snes_atol");
+  linear_floor_given_ = solver_option_given("-fluid_ksp_atol");
   if (system.equal_order() && (pressure_stage == "yes" || (pressure_stage == "auto" && rows_ >= stage_rows)))
     stage_ = std::make_unique<PressureStage>(system);
   create(snes_.out(), "fluid_", false);
@@ -70,9 +62,9 @@ void NewtonSolver::create(SNES* snes, const char* prefix, bool direct) {
     SILT_PETSC(KSPSetType(ksp, KSPGMRES));
     SILT_PETSC(KSPSetPCSide(ksp, PC_RIGHT));
     SILT_PETSC(PCSetType(pc, stage_ ? PCSHELL : PCASM));
-    default_option(options + "sub_pc_type", "ilu");
+    default_solver_option(options + "sub_pc_type", "ilu");
     const bool hexahedra = system_.space().mesh.cell == Cell::hexahedron;
-    default_option(options + "sub_pc_factor_levels", hexahedra ? "0" : "1");
+    default_solver_option(options + "sub_pc_factor_levels", hexahedra ? "0" : "1");
     if (stage_) stage_->attach(pc, prefix);
   } else {
     SILT_PETSC(KSPSetType(ksp, KSPFGMRES));
@@ -82,10 +74,10 @@ void NewtonSolver::create(SNES* snes, const char* prefix, bool direct) {
     SILT_PETSC(PCFieldSplitSetSchurPre(pc, PC_FIELDSPLIT_SCHUR_PRE_SELFP, nullptr));
     SILT_PETSC(PCFieldSplitSetIS(pc, "velocity", system_.velocity_rows()));
     SILT_PETSC(PCFieldSplitSetIS(pc, "pressure", system_.pressure_rows()));
-    default_option(options + "fieldsplit_velocity_ksp_type", "preonly");
-    default_option(options + "fieldsplit_velocity_pc_type", "bjacobi");
-    default_option(options + "fieldsplit_pressure_ksp_type", "preonly");
-    default_option(options + "fieldsplit_pressure_pc_type", "hypre");
+    default_solver_option(options + "fieldsplit_velocity_ksp_type", "preonly");
+    default_solver_option(options + "fieldsplit_velocity_pc_type", "bjacobi");
+    default_solver_option(options + "fieldsplit_pressure_ksp_type", "preonly");
+    default_solver_option(options + "fieldsplit_pressure_pc_type", "hypre");
   }
   SILT_PETSC(KSPGMRESSetRestart(ksp, 100));
   SILT_PETSC(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 400));
@@ -93,22 +85,22 @@ void NewtonSolver::create(SNES* snes, const char* prefix, bool direct) {
   SILT_PETSC(KSPGetTolerances(ksp, &linear_tolerance_, nullptr, nullptr, nullptr));
   PetscBool exact = PETSC_FALSE;
   SILT_PETSC(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &exact));
-  if (!exact && !option_given(options + "ksp_rtol") && !option_given(options + "snes_ksp_ew")) {
-    may_keep_ = !option_given(options + "snes_lag_jacobian");
+  if (!exact && !solver_option_given(options + "ksp_rtol") && !solver_option_given(options + "snes_ksp_ew")) {
+    may_keep_ = !solver_option_given(options + "snes_lag_jacobian");
     SILT_PETSC(SNESKSPSetUseEW(*snes, PETSC_TRUE));
     SILT_PETSC(
         SNESKSPSetParametersEW(*snes, 1, loosest, loosest, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   }
   PCType type;
   SILT_PETSC(PCGetType(pc, &type));
-  if (std::string(type) == PCLU && !option_given(options + "pc_factor_mat_solver_type")) {
+  if (std::string(type) == PCLU && !solver_option_given(options + "pc_factor_mat_solver_type")) {
     SILT_PETSC(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
     // PETSc's own ordering, handed over by default, makes fronts many times larger than MUMPS's.
-    if (!option_given(options + "pc_factor_mat_ordering_type"))
+    if (!solver_option_given(options + "pc_factor_mat_ordering_type"))
       SILT_PETSC(PCFactorSetMatOrderingType(pc, MATORDERINGEXTERNAL));
     // A closed domain leaves one zero pivot; more room than estimated avoids a second factorisation.
-    default_option(options + "mat_mumps_icntl_24", "1");
-    default_option(options + "mat_mumps_icntl_14", "60");
+    default_solver_option(options + "mat_mumps_icntl_24", "1");
+    default_solver_option(options + "mat_mumps_icntl_14", "60");
   }
 }
 

@@ -7,6 +7,8 @@
 #include "base/error.hpp"
 #include "base/expression.hpp"
 #include "base/options.hpp"
+#include "base/petsc.hpp"
+#include "base/solver_defaults.hpp"
 
 using namespace silt;
 
@@ -186,4 +188,22 @@ TEST_CASE("A mistyped property of a named thing is answered with the property an
   options = Options();
   options.set("pair_glass_wall_roling_friction", "0");
   CHECK(answer().find("did you mean -pair_glass_wall_rolling_friction?") != std::string::npos);
+}
+
+TEST_CASE("a solver's defaults give way to those of the next one and to what the user gave, in any order") {
+  const auto value = [] {
+    char text[16] = "";
+    PetscOptionsGetString(nullptr, nullptr, "-a_default", text, sizeof text, nullptr);
+    return std::string(text);
+  };
+  default_solver_option("-a_default", "1");
+  CHECK(value() == "1");
+  CHECK(!solver_option_given("-a_default"));
+  default_solver_option("-a_default", "0");
+  CHECK(value() == "0");
+  PetscOptionsSetValue(nullptr, "-a_default", "2");
+  default_solver_option("-a_default", "1");
+  CHECK(value() == "2");
+  CHECK(solver_option_given("-a_default"));
+  PetscOptionsClearValue(nullptr, "-a_default");
 }

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "base/error.hpp"
+#include "fluid/turbulence/dilatation_dissipation.hpp"
 #include "fluid/turbulence/turbulence.hpp"
 #include "gas_case.hpp"
 
@@ -80,6 +81,82 @@ TEST_CASE("what decaying turbulence loses heats the gas: total energy is kept to
       CHECK(k == Approx(exact).epsilon(0.02));
       CHECK(flow.fluid->temperature()[0] == Approx(1 + (0.2 - k) / 2.5).epsilon(1e-4));
     }
+}
+
+TEST_CASE("the dilatation dissipation is that of Sarkar, Zeman and Wilcox", "[fluid][turbulence]") {
+  const auto at = [](const char* law, double mach) {  // c = 300 m/s, k = (M_t c)^2/2
+    return DilatationDissipation(law).ratio(0.5 * mach * mach * 9e4, 300, 1.4);
+  };
+  for (const double mach : {0.0, 0.05, 0.3, 0.7}) {
+    CAPTURE(mach);
+    CHECK(at("none", mach) == 0);
+    CHECK(at("sarkar", mach) == Approx(mach * mach));
+    CHECK(at("wilcox", mach) == Approx(mach > 0.25 ? 1.5 * (mach * mach - 0.0625) : 0.0));
+    const double over = mach - 0.0912870929;  // 0.1 sqrt(2/2.4)
+    CHECK(at("zeman", mach) == Approx(over > 0 ? 0.75 * (1 - std::exp(-1.2 * over * over / 0.36)) : 0.0));
+  }
+}
+
+TEST_CASE("turbulence that decays with dilatation dissipation follows its equations and heats the gas by what it loses",
+          "[fluid][compressible][turbulence][mpi]") {
+  for (const std::string model : {"realizable_k_epsilon", "sst_k_omega"}) {
+    const bool epsilon = model != "sst_k_omega";
+    auto settings = gas("quadrilateral", "3, 3");
+    settings[5].second = "1e-9";
+    set(settings, "x_min x_max y_min y_max", "type", "slip");
+    for (const auto& [name, value] :
+         FlowCase::Settings{{"order", "1"},
+                            {"turbulence", model},
+                            {"compressibility_correction", "sarkar"},
+                            {"turbulence_largest_ratio", "1e20"},
+                            {"initial_pressure", "1"},
+                            {"initial_temperature", "1"},
+                            {"initial_turbulent_energy", "0.2"},
+                            {"initial_viscosity_ratio", epsilon ? "0.09*0.04/0.3/1e-9" : "0.04/1e-9"}})
+      settings.push_back({"fluid_" + name, value});
+    const Tight tight;
+    FlowCase flow(settings);
+    const double before = 2.5 * sum_over(flow, [](size_t) { return 1; }) + turbulent_energy(flow);
+    // k' = -epsilon (1 + M_t^2), M_t^2 = 2 k/(1.4 T), 2.5 T + k constant; epsilon' = -1.9 epsilon^2/k, and for
+    // omega = epsilon/(0.09 k): omega' = -0.0828 omega^2 + 0.09 M_t^2 omega^2. By the midpoint rule.
+    double k = 0.2, second = epsilon ? 0.3 : 5;
+    const auto slope = [&](double k1, double s) {
+      const double mach2 = 2 * k1 / (1.4 * (1 + (0.2 - k1) / 2.5));
+      return epsilon ? std::pair{-s * (1 + mach2), -1.9 * s * s / k1}
+                     : std::pair{-0.09 * k1 * s * (1 + mach2), (-0.0828 + 0.09 * mach2) * s * s};
+    };
+    const int steps = 800;
+    for (int i = 0; i < 20000; ++i) {
+      const double h = 2.0 / 20000;
+      const auto [dk, ds] = slope(k, second);
+      const auto [mk, ms] = slope(k + 0.5 * h * dk, second + 0.5 * h * ds);
+      k += h * mk, second += h * ms;
+    }
+    for (int i = 0; i < steps; ++i) flow.advance(2.0 / steps);
+    INFO(model);
+    CHECK(flow.fluid->turbulent_energy()[0] == Approx(k).epsilon(0.005));
+    CHECK(flow.fluid->temperature()[0] == Approx(1 + (0.2 - k) / 2.5).epsilon(1e-3));
+    const double after =
+        2.5 * sum_over(flow, [&](size_t i) { return flow.fluid->pressure()[i]; }) + turbulent_energy(flow);
+    CHECK(after == Approx(before).epsilon(1e-11 * steps));
+  }
+}
+
+TEST_CASE("a compressibility correction needs the speed of sound and a model with k", "[fluid][turbulence]") {
+  const auto start = [](const char* type, const char* model) {
+    FlowCase::Settings settings = {{"mesh_cell", "quadrilateral"},
+                                   {"mesh_cells", "3, 3"},
+                                   {"fluid_type", type},
+                                   {"fluid_density", "1"},
+                                   {"fluid_viscosity", "1"},
+                                   {"fluid_turbulence", model},
+                                   {"fluid_compressibility_correction", "sarkar"},
+                                   {"fluid_initial_turbulent_energy", "1"}};
+    set(settings, "x_min x_max y_min y_max", "type", "slip");
+    FlowCase flow(settings);
+  };
+  CHECK_THROWS_WITH(start("incompressible", "sst_k_omega"), Catch::Contains("needs -fluid_type compressible"));
+  CHECK_THROWS_WITH(start("incompressible", "wale"), Catch::Contains("has no meaning with -fluid_turbulence wale"));
 }
 
 TEST_CASE("an isotropic compression or expansion changes k as the density to 2/3, in space and around an axis",

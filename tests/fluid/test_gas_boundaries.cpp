@@ -175,3 +175,23 @@ TEST_CASE("sound leaves through a far field", "[fluid][compressible]") {
   while (flow.time < 0.8) flow.advance(0.005);
   CHECK(strength() < 2e-5);
 }
+
+TEST_CASE("a gas without viscosity takes no pressure where its velocity is given, an incompressible one never does",
+          "[fluid][compressible]") {
+  auto settings = gas("quadrilateral", "3, 3");
+  set(settings, "y_min y_max", "type", "slip");
+  set(settings, "x_min", "type", "velocity");
+  set(settings, "x_min", "velocity", "0.1, 0, 0");
+  set(settings, "x_min", "temperature_value", "1");
+  set(settings, "x_min", "pressure", "1");
+  set(settings, "x_max", "type", "pressure");
+  set(settings, "x_max", "pressure", "1");
+  settings.push_back({"fluid_initial_pressure", "1"});
+  settings.push_back({"fluid_initial_temperature", "1"});
+  settings.push_back({"fluid_initial_velocity", "0.1, 0, 0"});
+  CHECK_THROWS_WITH(FlowCase(settings), Catch::Contains("-boundary_x_min_pressure: a gas without viscosity"));
+  settings.push_back({"fluid_viscosity", "0.01"});
+  FlowCase flow(settings);
+  flow.advance(0.1);
+  for (const double p : flow.fluid->pressure()) CHECK(p == Approx(1));
+}

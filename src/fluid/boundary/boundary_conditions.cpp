@@ -30,7 +30,7 @@ void BoundaryOptions::options(OptionGroup& option) {
   option(
       "pressure", pressure,
       "Pa, formula in x, y, z, t: static pressure (pressure), stagnation pressure (total_pressure), pressure outside "
-      "(far_field, supersonic_inflow)");
+      "(far_field, supersonic_inflow); velocity, viscous gas: pressure of what enters");
   option.group("temperature", temperature);
   option.group("turbulence", turbulence);
 }
@@ -89,7 +89,9 @@ void BoundaryConditions::read(Options& options) {
     for (const char* property : {"rotation_axis", "rotation_centre"})
       check(property, condition.type == no_slip && options.given(prefix + "_rotation_rate"), false);
     check("mass_flow", condition.type == mass_flow, condition.type == mass_flow);
-    check("pressure", condition.type == pressure || condition.type == total_pressure || outside,
+    check("pressure",
+          condition.type == pressure || condition.type == total_pressure || outside ||
+              (compressible_ && condition.type == velocity),
           condition.type == total_pressure || outside || (compressible_ && condition.type == pressure));
     condition.moving =
         condition.type == no_slip && (options.given(prefix + "_velocity") || options.given(prefix + "_rotation_rate"));
@@ -97,6 +99,7 @@ void BoundaryConditions::read(Options& options) {
         std::make_unique<VectorExpression>(prefix + "_velocity", given.rotation.formula(prefix, given.velocity));
     condition.mass_flow = std::make_unique<Expression>(prefix + "_mass_flow", given.mass_flow);
     condition.pressure = std::make_unique<Expression>(prefix + "_pressure", given.pressure);
+    condition.has_pressure = condition.type == velocity && options.given(prefix + "_pressure");
     closed_ = closed_ && condition.type < pressure;
     conditions_.push_back(std::move(condition));
   }

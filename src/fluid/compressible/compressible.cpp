@@ -71,6 +71,12 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
       newton_(system_),
       turbulence_(Turbulence::create(mesh, options, boundaries_, options_.symmetry == "axisymmetric")),
       cell_size_(shortest_edges(mesh)) {
+  for (size_t b = 0; b < mesh.boundaries.size(); ++b)
+    if (boundaries_.has_pressure(static_cast<int>(b)) && fluid.viscosity == 0)
+      throw UserError(
+          fmt::format("-boundary_{}_pressure: a gas without viscosity enters at the pressure inside where velocity and "
+                      "temperature are given",
+                      mesh.boundaries[b]));
   if (turbulence_ && fluid.viscosity == 0) throw UserError("-fluid_turbulence needs -fluid_viscosity above 0");
   viscosity_ = fluid.viscosity;
   model_a_ = true;
@@ -194,6 +200,8 @@ void Compressible::set_outside(double time, double dt) {
                                            : OpenBoundary::supersonic_outflow;
       if (type == pressure || type == total_pressure || type == far_field || type == supersonic_inflow)
         o.p = boundaries_.given_pressure(b, x, time) / p0_;
+      o.has_pressure = boundaries_.has_pressure(b);
+      if (o.has_pressure) o.p = boundaries_.given_pressure(b, x, time) / p0_;
       if (type == far_field || type == supersonic_inflow) {
         const Vec3 u = boundaries_.given_velocity(b, x, time) / u0_;
         std::copy_n(u.data(), 3, o.u);

@@ -8,7 +8,7 @@
 namespace silt {
 
 Turbulence::Flow Compressible::turbulent_flow() const {
-  return {velocity_, density_field_, viscosity_field_, load_.void_fraction, {}, true};
+  return {velocity_, density_field_, viscosity_field_, load_.void_fraction, {}, true, 0, sound_, options_.heat_ratio};
 }
 
 int Compressible::solve_turbulence(double time, double dt) {

@@ -6,17 +6,12 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/solver_defaults.hpp"
 
 namespace silt {
 namespace {
 
 constexpr double largest_fall = 0.5, largest_rise = 2.0;
-
-void default_option(const char* name, const char* value) {
-  PetscBool found = PETSC_FALSE;
-  SILT_PETSC(PetscOptionsHasName(nullptr, nullptr, name, &found));
-  if (!found) SILT_PETSC(PetscOptionsSetValue(nullptr, name, value));
-}
 
 }  // namespace
 
@@ -41,8 +36,8 @@ GasNewton::GasNewton(const GasSystem& system) : system_(system), matrix_(system.
   SILT_PETSC(KSPGMRESSetRestart(ksp, 60));
   SILT_PETSC(KSPSetTolerances(ksp, 1e-3, 1e-50, PETSC_DEFAULT, 300));
   SILT_PETSC(PCSetType(pc, mpi_size() > 1 ? PCASM : PCBJACOBI));  // alone ASM would only copy the matrix
-  default_option("-fluid_sub_pc_type", "ilu");
-  default_option("-fluid_sub_pc_factor_levels", "1");
+  default_solver_option("-fluid_sub_pc_type", "ilu");
+  default_solver_option("-fluid_sub_pc_factor_levels", "1");
   SILT_PETSC(SNESSetFromOptions(snes_));
   PetscReal asked;
   SILT_PETSC(SNESGetTolerances(snes_, &asked, nullptr, nullptr, nullptr, nullptr));

@@ -12,6 +12,7 @@ struct OpenBoundary {
   Kind kind = supersonic_outflow;
   double p = 1, T = 1, u[3] = {0, 0, 0};
   double inflow = 0;             ///< mass per area and time into the domain (mass_flow)
+  bool has_pressure = false;     ///< velocity: p is that of gas which enters
   bool has_temperature = false;  ///< pressure: T is that of gas which enters
 
   /// far_field: gas enters at sonic speed (nozzles) or more: nothing of the inside counts.
@@ -53,6 +54,8 @@ void open_flux(const GasLaw& gas, const OpenBoundary& outside, const GasState<S,
   GasState<S, dim> at = inside;
   switch (outside.kind) {
     case OpenBoundary::velocity:
+      if (outside.has_pressure && value_of(un) < 0) at.p = S(outside.p);
+      break;
     case OpenBoundary::supersonic_outflow:
       break;
     case OpenBoundary::supersonic_inflow:

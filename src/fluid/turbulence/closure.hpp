@@ -21,6 +21,7 @@ struct TurbulentTerms {
   double k_diffusivity, second_diffusivity;  ///< kg/(m s), molecular part included
   double k_production, k_destruction;
   double second_production, second_destruction;
+  double free = 1;  ///< share of the model of free shear layers; less near walls (SST: 1 - F1)
 };
 
 }  // namespace silt

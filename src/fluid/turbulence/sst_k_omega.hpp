@@ -39,6 +39,7 @@ struct SstKOmega {
     const double beta = blend(beta_1, beta_2), gamma = blend(gamma_1, gamma_2);
     TurbulentTerms t;
     t.eddy_viscosity = mu_t;
+    t.free = 1 - F1;
     t.k_diffusivity = p.viscosity + mu_t * blend(sigma_k1, sigma_k2);
     t.second_diffusivity = p.viscosity + mu_t * blend(sigma_omega1, sigma_omega2);
     t.k_production = std::min(p.production, 10 * beta_star * rho * k * omega);

@@ -40,6 +40,8 @@ class Turbulence {
     std::span<const double> source = {};
     bool compressible = false;  ///< dilatation of the flow does work on k (C18)
     double dissipation_factor = 0;
+    std::span<const double> sound = {};  ///< [nodes] m/s, compressible flow
+    double heat_ratio = 1.4;
   };
 
   /// Reads `-fluid_turbulence...` and `-boundary_<name>_turbulence_...`; null for `none`. Collective.

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "base/options.hpp"
+#include "fluid/turbulence/dilatation_dissipation.hpp"
 
 namespace silt {
 
@@ -12,6 +13,7 @@ struct TurbulenceOptions {
   double prandtl = 0.85;
   int iterations = 1;
   double largest_ratio = 1e6;
+  std::string compressibility_correction = "none";
   std::string initial_energy = "0", initial_viscosity_ratio = "10";
   std::string energy_source = "0", dissipation_source = "0";
   void options(OptionGroup& option) {
@@ -23,6 +25,10 @@ struct TurbulenceOptions {
     option("turbulence_prandtl", prandtl, "-", "turbulent Prandtl number", positive);
     option("turbulence_iterations", iterations, "-", "solutions of the two equations in a step", between(1, 100));
     option("turbulence_largest_ratio", largest_ratio, "-", "largest ratio of eddy viscosity to viscosity", positive);
+    option("compressibility_correction", compressibility_correction, DilatationDissipation::names,
+           "dissipation by fluctuating compression in the k models of compressible flow, which makes mixing layers of "
+           "high "
+           "Mach number grow more slowly");
     option("initial_turbulent_energy", initial_energy,
            "m2/s2, formula in x, y, z: turbulent kinetic energy at the start");
     option("initial_viscosity_ratio", initial_viscosity_ratio,

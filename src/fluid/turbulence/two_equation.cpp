@@ -1,5 +1,7 @@
 #include "fluid/turbulence/two_equation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -32,7 +34,8 @@ TwoEquation<Model>::TwoEquation(const Mesh& mesh, Options& options, const Turbul
       axisymmetric_(axisymmetric),
       k_transport_(rule_, graph_, "fluid_turbulent_energy_"),
       second_transport_(rule_, graph_, "fluid_turbulent_dissipation_"),
-      initial_(mesh, options, read, epsilon) {
+      initial_(mesh, options, read, epsilon),
+      dilatation_(read.compressibility_correction) {
   for (auto* field : {&k_, &old_k_, &second_, &old_second_, &dissipation_, &eddy_viscosity_})
     field->assign(mesh.nodes, 0.0);
   cell_eddy_viscosity_.assign(mesh.cells, 0.0);
@@ -58,6 +61,10 @@ double TwoEquation<Model>::inflow_second(int boundary, const Flow& flow, int nod
 
 template <class Model>
 void TwoEquation<Model>::start(const Flow& flow) {
+  if (dilatation_.law != DilatationDissipation::Law::none && !flow.compressible)
+    throw UserError(
+        fmt::format("-fluid_compressibility_correction {} needs -fluid_type compressible: sound has no speed otherwise",
+                    options_.compressibility_correction));
   k_ = initial_.k(), second_ = initial_.second();
   if (!initial_.from_file()) {
     k_.resize(mesh_.nodes), second_.resize(mesh_.nodes);
@@ -238,12 +245,27 @@ void TwoEquation<Model>::set_sources(const Flow& flow, const std::vector<Turbule
       energy.production[i] += std::max(0.0, -rate) * p.k;
       energy.destruction[i] += std::max(0.0, rate);
     }
+    add_dilatation(flow, p, terms.free, i, energy, second);
     if (flow.source.empty() || flow.source[i] == 0) continue;
     const double added = flow.source[i] / rule_.volume()[i], k = std::max(p.k, tiny);
     add(added, p.k, energy.production[i], energy.destruction[i]);
     const double factor = flow.dissipation_factor - (epsilon ? 0 : 1);  // d(omega)/omega = d(epsilon)/epsilon - dk/k
     add(factor * added * p.second / k, p.second, second.production[i], second.destruction[i]);
   }
+}
+
+template <class Model>
+void TwoEquation<Model>::add_dilatation(const Flow& flow, const TurbulentPoint& p, double free, int i,
+                                        PositiveTransport::Terms& energy, PositiveTransport::Terms& second) const {
+  if (flow.sound.empty()) return;
+  const double share = free * dilatation_.ratio(p.k, flow.sound[i], flow.heat_ratio);
+  if (share == 0) return;
+  const double dissipated = flow.void_fraction[i] * share * p.density * Model::dissipation(p.k, p.second);
+  // epsilon_d = epsilon_d* (2 k/k* - 1), as the epsilon of the equation of k; omega = epsilon/(beta* k) rises as k
+  // falls.
+  energy.production[i] += dissipated;
+  energy.destruction[i] += 2 * dissipated / std::max(p.k, tiny);
+  if constexpr (!epsilon) second.production[i] += dissipated * p.second / std::max(p.k, tiny);
 }
 
 template <class Model>

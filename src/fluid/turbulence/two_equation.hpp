@@ -56,6 +56,9 @@ class TwoEquation : public Turbulence {
   void set_sources(const Flow& flow, const std::vector<TurbulentPoint>& points, const State& state, double t,
                    PositiveTransport::Terms& energy, PositiveTransport::Terms& second) const;
   void set_dissipation();
+  /// Adds the dissipation by dilatation (T8, T9) at a node.
+  void add_dilatation(const Flow& flow, const TurbulentPoint& p, double free, int node,
+                      PositiveTransport::Terms& energy, PositiveTransport::Terms& second) const;
 
   static constexpr bool epsilon = requires { Model::C2; };
 
@@ -68,6 +71,7 @@ class TwoEquation : public Turbulence {
   bool resolved_, axisymmetric_;
   PositiveTransport k_transport_, second_transport_;
   InitialTurbulence initial_;
+  DilatationDissipation dilatation_;
 
   std::vector<double> k_, old_k_, second_, old_second_, dissipation_, exchange_;
   State next_;
