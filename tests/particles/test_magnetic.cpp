@@ -139,6 +139,20 @@ TEST_CASE("Spheres that magnetise each other have the moments of two coupled dip
     for (int p = 0; p < run.engine.store.owned; ++p)
       CHECK((run.moment_of(p) - Vec3(0, 0, expected)).norm() < 1e-11 * expected);
   }
+  // The same across periodic sides, within a cut-off and without.
+  for (const char* cutoff : {"0", "3e-7"}) {
+    Magnets run(magnets("linear")
+                    .set("magnetic_susceptibility", "1.2")
+                    .set("magnetic_field", "0, 0, 1e4")
+                    .set("magnetic_cutoff", cutoff)
+                    .set("magnetic_tolerance", "1e-13")
+                    .periodic());
+    const Vec3 end(0, 0, 2e-6 - 0.5 * r);
+    run.engine.add({sphere(-end, Vec3::Zero(), radius), sphere(end, Vec3::Zero(), radius)});
+    run.engine.advance(0, 1e-15);
+    for (int p = 0; p < run.engine.store.owned; ++p)
+      CHECK(run.moment_of(p)[2] == Approx(chi * volume * field / (1 - 2 * coupling)).epsilon(1e-11));
+  }
   LinearMagnetism iron;
   iron.permeability = 1e9;
   CHECK(iron.effective() == Approx(3));
@@ -240,6 +254,34 @@ TEST_CASE("A magnet in a viscous fluid follows a turning field behind by arcsin(
         CHECK(turned == Approx((rate - beat) * end).epsilon(0.02));
       }
     }
+}
+
+TEST_CASE("A magnet that a fluid holds turns on its way through all ranks as one that stands still",
+          "[magnetic][mpi]") {
+  const auto end_of = [](double drift) {
+    BoxCase setup;
+    setup.box(Vec3::Zero(), Vec3(6e-6, 1e-6, 1e-6));
+    setup.mesh.cells = {30, 2, 2};
+    setup.set("magnetic_type", "permanent").set("magnetic_magnetisation", "4.8e5").set("particles_speed", "1");
+    setup.set("material_bead_density", "5000").set("magnetic_direction", "1, 0, 0.5");
+    setup.set("magnetic_field", "1e4*cos(5e5*t), 1e4*sin(5e5*t), 0");
+    setup.set("particles_step", "1e-8").set("particles_step_override", "yes");
+    Magnets run(setup);
+    run.engine.add({sphere(Vec3(5e-7, 5e-7, 5e-7), Vec3(drift, 0, 0), radius)});
+    for (int k = 0; k < 20; ++k) {
+      run.engine.store.want_actions();
+      for (auto& action : run.engine.store.action) action.spin_exchange = 8 * pi * 1e-3 * radius * radius * radius;
+      run.engine.advance(k * 1e-7, 1e-7);
+    }
+    Vec3 m = Vec3::Zero();
+    for (int p = 0; p < run.engine.store.owned; ++p) m = run.moment_of(p);
+    MPI_Allreduce(MPI_IN_PLACE, m.data(), 3, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+    return m;
+  };
+  const Vec3 still = end_of(0), moved = end_of(2.4);
+  CHECK(still.norm() == Approx(moment).epsilon(1e-9));
+  CHECK(std::abs(still[2]) < 0.3 * moment);  // it has turned
+  CHECK((moved - still).norm() < 1e-9 * moment);
 }
 
 TEST_CASE("Saturated moments turn with the field at once, and the force on a soft sphere goes with its square",
