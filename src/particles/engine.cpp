@@ -69,6 +69,8 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
   wall_force_sum_.assign(3 * walls_.count() + 3, 0.0);
   wall_torque_sum_ = wall_force_sum_;
   store.reserve(0);
+  for (const int material : streams_.materials())
+    if (heat_) heat_->check(material);
   const std::vector<Seed> seeds = make_insertions(walls_, options, names_of(materials), empty);
   if (!seeds.empty()) add(seeds);
 }

@@ -132,6 +132,13 @@ TEST_CASE("Particles with a temperature need a heat capacity, and a conductivity
   CHECK_THROWS_AS(add_one(none), UserError);
   none.set("material_bead_heat_capacity", "100").set("heat_conduction", "yes");
   CHECK_THROWS_AS(add_one(none), UserError);
+  // A stream's material is asked for at the start, not when it comes.
+  BoxCase later;
+  later.set("heat_particles", "yes").set("insertion_rain_type", "stream").set("insertion_rain_diameter", "0.01");
+  later.set("insertion_rain_number_rate", "1").set("insertion_rain_start", "10");
+  later.set("insertion_rain_lower", "0.1, 0.1, 0.1").set("insertion_rain_upper", "0.9, 0.9, 0.9");
+  CHECK_THROWS_WITH(BoxRun(later), Catch::Contains("heat_capacity is missing"));
+  CHECK_NOTHROW(BoxRun(later.set("material_bead_heat_capacity", "100")));
   // The material of a wall alone needs neither.
   none.set("material_bead_conductivity", "1").set("material_wall_density", "8000");
   none.set("boundary_x_min_material", "wall");

@@ -32,6 +32,8 @@ class MaterialChoice {
   /// `materials`: the names of all. Throws UserError.
   MaterialChoice(const InsertionOptions& options, const std::string& prefix, const std::vector<std::string>& materials);
   int draw(RandomStream& random) const;
+  /// Those that may be drawn.
+  const std::vector<int>& all() const { return index_; }
 
  private:
   std::vector<int> index_;

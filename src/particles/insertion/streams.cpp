@@ -123,6 +123,13 @@ Streams::Streams(const Walls& walls, Options& options, const Materials& material
 
 Streams::~Streams() = default;
 
+std::vector<int> Streams::materials() const {
+  std::vector<int> result;
+  for (const Source& source : sources_)
+    result.insert(result.end(), source.materials.all().begin(), source.materials.all().end());
+  return result;
+}
+
 bool Streams::due(int s, double time, double dt) const {
   const Source& source = sources_[s];
   const StreamState& state = states_[s];

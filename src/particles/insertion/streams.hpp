@@ -36,6 +36,8 @@ class Streams {
   ~Streams();
 
   int count() const { return static_cast<int>(states_.size()); }
+  /// Indices of the materials that streams bring, with repeats.
+  std::vector<int> materials() const;
   bool removes() const { return !removals_.empty(); }
   /// Whether stream s has anything to add in the step from time to time + dt.
   bool due(int s, double time, double dt) const;
