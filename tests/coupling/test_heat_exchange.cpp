@@ -56,9 +56,6 @@ TEST_CASE("A hot sphere in a wind cools as Ranz and Marshall say (MFiX's case)",
 TEST_CASE("Fluid and particles in a closed box come to the temperature of their mixture, and no heat is lost",
           "[heat][mpi]") {
   for (const std::string scheme : {"pressure_correction", "monolithic"}) {
-    // A second, monolithic fluid in one process on several ranks fails in its constructor (Mesh::sum_shared), which has
-    // nothing to do with heat: on one rank only.
-    if (scheme == "monolithic" && mpi_size() > 1) continue;
     CoupledCase run;
     run.set("mesh_upper", "0.02, 0.02, 0.02").set("mesh_cells", "5, 5, 5").set("mesh_periodic", "1, 1, 1");
     run.set("fluid_order", "1").set("particles_step", "2e-3").set("particles_step_override", "yes");
