@@ -74,14 +74,18 @@ def main():
 
     rates, leans = [], []
     for ranks in (1, 2):
-        run = Run(silt, "hopper.yaml", HOPPER, ranks)
-        rate = 2500 * 4 / 3 * math.pi * 0.002**3 * run.slope("removed", 0.35, 0.7)
-        expected = 0.58 * 0.58 * 2500 * math.sqrt(9.81) * (0.028 - 1.4 * 0.004) ** 2.5
-        rates.append(rate)
-        check(f"hopper, {ranks} ranks: Beverloo", abs(rate / expected - 1) < 0.1, f"{rate:.4f} kg/s, expected {expected:.4f}")
-        gone = run.diagnostics["removed"][-1]
-        check(f"hopper, {ranks} ranks: every grain is accounted for", gone + len(run.id) == 2500 and len(set(run.id)) == len(run.id), f"{gone:g} + {len(run.id)}")
-        check(f"hopper, {ranks} ranks: the ledger closes", run.ledger["residual"].max() < 1e-10, f"{run.ledger['residual'].max():.2g}")
+        # The rate of one filling is off the mean of many by 2.8 % (five fillings, on one and two ranks).
+        rates.append([])
+        for seed in (1, 2, 3):
+            run = Run(silt, "hopper.yaml", HOPPER + ["-insertion_spheres_seed", str(seed)], ranks)
+            rate = 2500 * 4 / 3 * math.pi * 0.002**3 * run.slope("removed", 0.35, 0.7)
+            expected = 0.58 * 0.58 * 2500 * math.sqrt(9.81) * (0.028 - 1.4 * 0.004) ** 2.5
+            rates[-1].append(rate)
+            label = f"hopper, {ranks} ranks, filling {seed}"
+            check(f"{label}: Beverloo", abs(rate / expected - 1) < 0.1, f"{rate:.4f} kg/s, expected {expected:.4f}")
+            gone = run.diagnostics["removed"][-1]
+            check(f"{label}: every grain is accounted for", gone + len(run.id) == 2500 and len(set(run.id)) == len(run.id), f"{gone:g} + {len(run.id)}")
+            check(f"{label}: the ledger closes", run.ledger["residual"].max() < 1e-10, f"{run.ledger['residual'].max():.2g}")
 
         run = Run(silt, "rotating_drum.yaml", DRUM, ranks)
         x, z = run.position[:, 0], run.position[:, 2]
@@ -94,7 +98,8 @@ def main():
               f"change {change:.5e} N m s, walls {walls:.5e}, weight {weight:.5e}, rest {(change - walls - weight) / weight:.1e} of the weight's")
         check(f"drum, {ranks} ranks: all grains are in the drum", len(run.id) == 1000 and np.hypot(x, z).max() < 0.05 - 0.0014, f"{np.hypot(x, z).max():.5f} m")
         check(f"drum, {ranks} ranks: the ledger closes", run.ledger["residual"].max() < 1e-10, f"{run.ledger['residual'].max():.2g}")
-    check("hopper: as many grains a second on two ranks", abs(rates[1] / rates[0] - 1) < 0.06, f"{rates[0]:.4f} {rates[1]:.4f} kg/s")
+    one, two = (np.mean(rate) for rate in rates)
+    check("hopper: as many grains a second on two ranks", abs(two / one - 1) < 0.06, f"{one:.4f} {two:.4f} kg/s")
     check("drum: the same slope on two ranks", abs(leans[1] - leans[0]) < 3, f"{leans[0]:.1f} {leans[1]:.1f} degrees")
     return 1 if faults else 0
 
