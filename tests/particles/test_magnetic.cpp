@@ -247,7 +247,7 @@ TEST_CASE("A magnet in a viscous fluid follows a turning field behind by arcsin(
       }
       INFO("w/w_c " << ratio << ", step " << step << ": turned by " << turned << " of " << rate * end);
       if (ratio < 1) {
-        CHECK(run.engine.store.motion[0].spin[2] == Approx(rate).epsilon(2e-3));
+        CHECK(run.engine.store.rotation[0].spin[2] == Approx(rate).epsilon(2e-3));
         CHECK(rate * end - turned == Approx(std::asin(ratio)).epsilon(0.02));
       } else {
         // After whole beats, from any angle.
