@@ -10,7 +10,7 @@ namespace silt {
 
 /// What the particles did to the walls, `walls.csv`, a row a step: of every wall the mean force (N) and torque (N m; of
 /// the mesh's boundaries about the origin, of rigid walls about their centre of rotation) over the step, of moving
-/// walls also displacement (m) and angle (rad).
+/// walls also displacement (m) and angle (rad), of those that conduct heat what the particles take (W).
 class WallTable {
  public:
   /// Of a run without particles when null.
@@ -24,6 +24,7 @@ class WallTable {
 
  private:
   std::vector<std::string> columns_{"time"};
+  std::vector<bool> conducts_;  ///< by wall
   CsvWriter table_;
 };
 

@@ -69,6 +69,7 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
   wall_force_sum_.assign(3 * walls_.count() + 3, 0.0);
   wall_torque_sum_ = wall_force_sum_;
   store.reserve(0);
+  check_warm_walls();
   for (const int material : streams_.materials())
     if (heat_) heat_->check(material);
   const std::vector<Seed> seeds = make_insertions(walls_, options, names_of(materials), empty);
@@ -236,6 +237,7 @@ ParticleStep Engine::advance(double time, double dt) {
   wall_impulse.assign(walls_.count(), Vec3::Zero());
   wall_turning = wall_impulse;
   wall_time = dt;
+  if (heat_) heat_->restart_account(walls_.count());
   result.removed = removed;
   if (dt <= 0) return result;
   if (total == 0) {  // walls do not wait for particles
@@ -312,7 +314,7 @@ ParticleStep Engine::advance(double time, double dt) {
       correct(h);
       account(h);
     }
-    if (heat_) heat_->advance(store, contacts, periods_, time + (s + 1) * h, h);
+    if (heat_) heat_->advance(store, contacts, wall_contacts, walls_, periods_, time + (s + 1) * h, h);
   }
   if (!energy_) correct(h);
   logged.reset();

@@ -129,6 +129,8 @@ class Engine {
   void take_out(double time);
   void move_walls(double time, double h);
   void add_wall_impulses(double h);
+  /// Throws UserError for a wall with a temperature that cannot act.
+  void check_warm_walls() const;
   /// Adds the force fields' part to the present loads.
   void act_fields(double time, double dt);
   /// Asks the pass for the rotations of the step where a field has vectors that turn with the particles.

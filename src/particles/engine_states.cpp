@@ -41,7 +41,7 @@ void Engine::heat_held(double time, double dt) {
   const int steps = static_cast<int>(std::ceil(dt / longest * (1 - 1e-12)));
   for (int s = 0; s < steps; ++s) {
     halo_.forward(store);
-    heat_->advance(store, contacts, periods_, time + (s + 1) * dt / steps, dt / steps);
+    heat_->advance(store, contacts, wall_contacts, walls_, periods_, time + (s + 1) * dt / steps, dt / steps);
   }
 }
 

@@ -168,20 +168,27 @@ std::vector<std::string> Particles::wall_names() const {
   return names;
 }
 
+bool Particles::wall_conducts(int wall) const { return impl_->walls().temperature(wall) != nullptr; }
+
 std::vector<Particles::WallLoad> Particles::wall_loads() const {
   const Walls& walls = impl_->walls();
   const int count = walls.count(), boundaries = static_cast<int>(walls.boundaries().size());
-  std::vector<double> sums(6 * static_cast<std::size_t>(count), 0.0);
+  constexpr std::size_t each = 7;
+  std::vector<double> sums(each * static_cast<std::size_t>(count), 0.0);
   for (std::size_t w = 0; w < impl_->wall_impulse.size() && impl_->wall_time > 0; ++w) {
-    vec3(&sums[6 * w]) = -impl_->wall_impulse[w] / impl_->wall_time;
-    vec3(&sums[6 * w + 3]) = -impl_->wall_turning[w] / impl_->wall_time;
+    vec3(&sums[each * w]) = -impl_->wall_impulse[w] / impl_->wall_time;
+    vec3(&sums[each * w + 3]) = -impl_->wall_turning[w] / impl_->wall_time;
+    if (impl_->heat() && w < impl_->heat()->from_walls().size())
+      sums[each * w + 6] = impl_->heat()->from_walls()[w] / impl_->wall_time;
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
   std::vector<WallLoad> loads(count);
   for (int w = 0; w < count; ++w) {
     loads[w].name = walls.name(w);
-    loads[w].force = vec3(&sums[6 * static_cast<std::size_t>(w)]);
-    loads[w].torque = vec3(&sums[6 * static_cast<std::size_t>(w) + 3]);
+    const double* sum = &sums[each * static_cast<std::size_t>(w)];
+    loads[w].force = vec3(sum);
+    loads[w].torque = vec3(sum + 3);
+    loads[w].heat = sum[6];
     if (w < boundaries) continue;
     const RigidWall& wall = walls.rigid()[w - boundaries];
     loads[w].torque -= wall.reference().cross(loads[w].force);

@@ -215,10 +215,13 @@ class Particles {
     Vec3 torque = Vec3::Zero();  ///< N m, about the origin; of a rigid wall about its centre of rotation
     Vec3 displacement = Vec3::Zero();
     double angle = 0;  ///< rad
+    double heat = 0;   ///< W, conducted from the wall to the particles
   };
   /// Of all walls, over all ranks. Collective.
   std::vector<WallLoad> wall_loads() const;
   std::vector<std::string> wall_names() const;
+  /// Whether a wall conducts heat to particles.
+  bool wall_conducts(int wall) const;
 
  private:
   struct Impl;

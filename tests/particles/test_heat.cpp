@@ -74,6 +74,62 @@ TEST_CASE("Two spheres pressed together even out their temperatures as MFiX's ca
   }
 }
 
+TEST_CASE("Walls with a temperature warm the particles that touch them, the others do not, and what each gives is told",
+          "[heat][mpi]") {
+  constexpr double dt = 1e-3;  // the temperature of a step's start counts for all of it
+  const double r = 1.5e-3, low = 1.49e-3, side = 1.48e-3, capacity = 2500 * 4.0 / 3 * pi * r * r * r * 800;
+  for (const std::string radius : {"hertz", "lens"}) {
+    BoxCase setup = warm("300");
+    setup.set("material_paint_density", "1000").set("material_paint_conductivity", "0.05");
+    setup.set("heat_conduction", "yes").set("heat_contact_radius", radius).set("particles_fixed", "yes");
+    setup.set("boundary_z_min_wall_temperature", "z < -4e-3 ? 400 : 1").set("boundary_z_min_material", "paint");
+    setup.set("wall_plate_type", "plane").set("wall_plate_point", "0, 0, 0").set("wall_plate_normal", "1, 0, 0");
+    setup.set("wall_plate_material", "paint").set("wall_plate_temperature", "250");
+    setup.set("wall_cold_type", "plane").set("wall_cold_point", "0, -1.48e-3, 0").set("wall_cold_normal", "0, 1, 0");
+    BoxRun run(setup);
+    run.particles.add({sphere(Vec3(side, 0, -5e-3 + low), Vec3::Zero(), r)});
+    for (int n = 0; n < 10; ++n) run.particles.advance(dt * n, dt);
+    const auto through = [&](double distance) {
+      const double a = std::sqrt(radius == "lens" ? r * r - distance * distance : r * (r - distance));
+      return 4 * a / (1 / 2.0 + 1 / 0.05);
+    };
+    const double floor = through(low), plate = through(side), both = floor + plate;
+    const double rest = (floor * 400 + plate * 250) / both;
+    const auto at = [&](double t) { return rest + (300 - rest) * std::exp(-both * t / capacity); };
+    const double T = temperatures(run.particles, 1).at(0);
+    CHECK(T - 300 == Approx(at(10 * dt) - 300).epsilon(1e-5));
+    double given = 0;
+    for (const auto& wall : run.particles.wall_loads()) {
+      given += dt * wall.heat;
+      const double T_mean = rest + (at(9 * dt) - at(10 * dt)) * capacity / (dt * both);  // over the last step
+      const double expected = wall.name == "z_min"   ? floor * (400 - T_mean)
+                              : wall.name == "plate" ? plate * (250 - T_mean)
+                                                     : 0;
+      INFO(wall.name);
+      CHECK(wall.heat == Approx(expected).epsilon(1e-4));
+    }
+    CHECK(given == Approx(capacity * (at(10 * dt) - at(9 * dt))).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("A wall with a temperature that cannot act is refused", "[heat]") {
+  const auto fails = [](BoxCase setup, const std::string& words) {
+    CHECK_THROWS_WITH(BoxRun(setup), Catch::Contains(words));
+  };
+  fails(warm("300").set("boundary_z_min_wall_temperature", "400"), "-boundary_z_min_wall_temperature");
+  fails(warm("300")
+            .set("heat_conduction", "yes")
+            .set("boundary_z_min_wall_temperature", "400")
+            .set("boundary_z_min_particles", "outlet"),
+        "no wall");
+  fails(warm("300")
+            .set("heat_conduction", "yes")
+            .set("material_zinc_density", "7000")
+            .set("boundary_z_min_material", "zinc")
+            .set("boundary_z_min_wall_temperature", "400"),
+        "-material_zinc_conductivity");
+}
+
 TEST_CASE("A particle cools in a fluid as exp(-h A t/(m c_p)) whatever the step, and the heat it gave is counted",
           "[heat][mpi]") {
   BoxRun run(warm("400").set("heat_source", "1e6*t*0 + 2e6"));

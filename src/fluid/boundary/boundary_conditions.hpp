@@ -65,9 +65,9 @@ class BoundaryConditions {
   bool open(int boundary) const {
     return type(boundary) >= BoundaryType::pressure || (compressible_ && type(boundary) == BoundaryType::mass_flow);
   }
-  /// What the user gave for a boundary, at a point.
   /// Compressible flow, type velocity: the pressure of what enters is given too.
   bool has_pressure(int b) const { return conditions_[b].has_pressure; }
+  /// What the user gave for a boundary, at a point.
   double given_pressure(int b, const Vec3& x, double t) const { return (*conditions_[b].pressure)(x, t); }
   Vec3 given_velocity(int b, const Vec3& x, double t) const { return (*conditions_[b].velocity)(x, t); }
   double given_mass_flow(int b, double t) const { return (*conditions_[b].mass_flow)(Vec3::Zero(), t); }

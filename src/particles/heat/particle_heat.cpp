@@ -26,6 +26,15 @@ void ParticleHeat::check(int material) const {
     throw UserError(fmt::format("-material_{}_conductivity is missing: -heat_conduction needs it", m.name));
 }
 
+void ParticleHeat::check(const Walls& walls) const {
+  for (int w = 0; w < walls.count(); ++w) {
+    const Material& m = materials_[walls.material(w)];
+    if (walls.temperature(w) && options_.conduction && !m.conductivity)
+      throw UserError(fmt::format("-material_{}_conductivity is missing: the wall {} has a temperature and conducts",
+                                  m.name, walls.name(w)));
+  }
+}
+
 ParticleHeat::ParticleHeat(const HeatOptions& options, const Materials& materials, Columns& columns)
     : options_(options),
       materials_(materials),
@@ -61,21 +70,47 @@ void ParticleHeat::conduct(Store& store, const ContactLists& contacts, const Per
     } else {
       area = a.radius * b.radius / (a.radius + b.radius) * overlap;
     }
-    const Material &first = materials_[static_cast<int>(store.rotation[i].material)],
-                   &second = materials_[static_cast<int>(store.rotation[j].material)];
-    double radius = std::sqrt(std::max(area, 0.0));
-    if (options_.real_young_modulus)
-      radius *= std::pow(0.5 * (first.young_modulus + second.young_modulus) / *options_.real_young_modulus, 0.2);
-    const double flow = 4 * radius * (temperature[j] - temperature[i]) /
-                        (1 / first.conductivity.value() + 1 / second.conductivity.value());
+    const double flow =
+        conductance(area, static_cast<int>(store.rotation[i].material), static_cast<int>(store.rotation[j].material)) *
+        (temperature[j] - temperature[i]);
     gain_[i] += flow;
     gain_[j] -= flow;
   }
 }
 
-void ParticleHeat::advance(Store& store, const ContactLists& contacts, const Periods& periods, double time, double dt) {
+double ParticleHeat::conductance(double area, int first, int second) const {
+  const Material &one = materials_[first], &other = materials_[second];
+  double radius = std::sqrt(std::max(area, 0.0));
+  if (options_.real_young_modulus)
+    radius *= std::pow(0.5 * (one.young_modulus + other.young_modulus) / *options_.real_young_modulus, 0.2);
+  return 4 * radius / (1 / one.conductivity.value() + 1 / other.conductivity.value());
+}
+
+void ParticleHeat::conduct_from_walls(Store& store, const WallContacts& at_walls, const Walls& walls, double time,
+                                      double dt) {
+  const double* temperature = store.columns.values(temperature_);
+  const bool lens = options_.contact_radius == "lens";
+  for (const WallPoint& point : at_walls.points()) {
+    const Expression* wall = walls.temperature(point.boundary);
+    const int p = point.particle;
+    const double r = store.motion[p].radius, overlap = r - point.distance;
+    if (!wall || !(overlap > 0)) continue;
+    const Vec3 spot = vec3(store.motion[p].position) - point.distance * vec3(point.normal);
+    const double flow = conductance(lens ? r * r - point.distance * point.distance : r * overlap,
+                                    static_cast<int>(store.rotation[p].material), point.material) *
+                        ((*wall)(spot, time) - temperature[p]);
+    gain_[p] += flow;
+    from_walls_[static_cast<std::size_t>(point.boundary)] += flow * dt;
+  }
+}
+
+void ParticleHeat::advance(Store& store, const ContactLists& contacts, const WallContacts& at_walls, const Walls& walls,
+                           const Periods& periods, double time, double dt) {
   gain_.assign(static_cast<std::size_t>(store.all()) + 2, 0.0);
-  if (options_.conduction) conduct(store, contacts, periods);
+  if (options_.conduction) {
+    conduct(store, contacts, periods);
+    conduct_from_walls(store, at_walls, walls, time - dt, dt);
+  }
   double* temperature = store.columns.values(temperature_);
   const double* outside = store.columns.values(fluid_temperature_);
   const double* exchange = store.columns.values(exchange_);

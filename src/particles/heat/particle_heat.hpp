@@ -8,6 +8,8 @@
 #include "particles/contact_lists.hpp"
 #include "particles/materials.hpp"
 #include "particles/store.hpp"
+#include "particles/wall_contacts.hpp"
+#include "particles/walls/walls.hpp"
 
 namespace silt {
 
@@ -20,8 +22,9 @@ inline constexpr SwitchedModel heat_models[] = {
     {"conduction",
      "heat_conduction yes",
      {"", "Batchelor & O'Brien 1977",
-      "Q_ij = 4 a (T_j - T_i)/(1/l_i + 1/l_j), a = (R_eff x)^0.5 or of the lens, times (E/E_real)^0.2",
-      "two spheres that even out (MFiX)"}},
+      "Q_ij = 4 a (T_j - T_i)/(1/l_i + 1/l_j), a = (R_eff x)^0.5 or of the lens, times (E/E_real)^0.2; j a sphere or a "
+      "wall",
+      "two spheres that even out (MFiX), a sphere on a warm wall"}},
     {"radiation",
      "heat_emissivity",
      {"", "Stefan 1879; Boltzmann 1884", "Q = e sigma A (T_env^4 - T^4)", "cooling of a glowing sphere"}},
@@ -37,7 +40,8 @@ struct HeatOptions {
     option("particles", particles, "particles have a temperature");
     option("initial_temperature", initial_temperature, "K, formula in x, y, z: temperature of new particles");
     option("source", source, "W/m3 of particle, formula in x, y, z, t: heat made in the particles");
-    option("conduction", conduction, "particles that touch conduct heat (Batchelor & O'Brien 1977)");
+    option("conduction", conduction,
+           "particles that touch each other, or a wall with a temperature, conduct heat (Batchelor & O'Brien 1977)");
     option("contact_radius", contact_radius, {"hertz", "lens"},
            "radius of a contact: hertz, (R_eff x)^1/2; lens, of the circle in which the spheres intersect");
     option("real_young_modulus", real_young_modulus, "Pa",
@@ -63,8 +67,15 @@ class ParticleHeat {
   /// Throws UserError where particles of this material cannot have a temperature; one of walls alone needs no heat
   /// capacity.
   void check(int material) const;
+  bool conducts() const { return options_.conduction; }
+  /// Throws UserError for a wall that has a temperature but cannot conduct.
+  void check(const Walls& walls) const;
   /// Moves the temperatures of this rank's particles on by dt, up to `time`.
-  void advance(Store& store, const ContactLists& contacts, const Periods& periods, double time, double dt);
+  void advance(Store& store, const ContactLists& contacts, const WallContacts& at_walls, const Walls& walls,
+               const Periods& periods, double time, double dt);
+  /// J, what each wall gave to this rank's particles since restart_account().
+  const std::vector<double>& from_walls() const { return from_walls_; }
+  void restart_account(int walls) { from_walls_.assign(static_cast<std::size_t>(walls), 0.0); }
   /// J/K, m c_p of a particle.
   double capacity(const Store& store, int p) const {
     const auto material = static_cast<int>(store.rotation[p].material);
@@ -75,6 +86,9 @@ class ParticleHeat {
 
  private:
   void conduct(Store& store, const ContactLists& contacts, const Periods& periods);
+  void conduct_from_walls(Store& store, const WallContacts& at_walls, const Walls& walls, double time, double dt);
+  /// W/K, through a contact of a spot of this area (over pi, m2) between the materials.
+  double conductance(double area, int first, int second) const;
 
   HeatOptions options_;
   const Materials& materials_;
@@ -82,6 +96,7 @@ class ParticleHeat {
   std::shared_ptr<Expression> initial_;
   int temperature_, fluid_temperature_, exchange_, received_;
   std::vector<double> gain_;  ///< [owned + ghosts + 2] W
+  std::vector<double> from_walls_;
 };
 
 }  // namespace silt

@@ -95,6 +95,9 @@ void RigidWallOptions::options(OptionGroup& option) {
   option("type", type, {"plane", "box", "cylinder", "cone", "sphere", "revolution", "stl"},
          "shape of a wall that is no boundary of the mesh");
   option("material", material, "material of the wall; default: the first material in alphabetical order");
+  option("temperature", temperature,
+         "K, formula in x, y, z, t: temperature of the wall, which particles that touch it are warmed by "
+         "(-heat_conduction); default: it conducts no heat");
   option("side", side, {"inside", "outside", "both"},
          "where the particles are that feel the wall (plane: inside is where its normal points)");
   option("point", point, "m", "a point of the plane, the start of the axis, the centre of the sphere");
@@ -122,6 +125,7 @@ RigidWall::RigidWall(const std::string& name, const RigidWallOptions& options, c
     : name_(name), material_(material), lower_(domain.lower), upper_(domain.upper) {
   const std::string prefix = "wall_" + name;
   check_given(options, prefix);
+  if (!options.temperature.empty()) temperature_.emplace(prefix + "_temperature", options.temperature);
   for (const auto& [property, direction] : {std::pair{"normal", options.normal}, std::pair{"axis", options.axis}})
     if (direction && direction->norm() == 0)
       throw UserError(fmt::format("option -{}_{}: it has no direction", prefix, property));

@@ -1,9 +1,11 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "base/expression.hpp"
 #include "particles/insertion/room.hpp"
 #include "particles/walls/faceted_wall.hpp"
 #include "particles/walls/rigid_wall_options.hpp"
@@ -33,6 +35,8 @@ class RigidWall {
 
   const std::string& name() const { return name_; }
   int material() const { return material_; }
+  /// K; null: it conducts no heat.
+  const Expression* temperature() const { return temperature_ ? &*temperature_ : nullptr; }
   WallMotion& motion() { return motion_; }
   const WallMotion& motion() const { return motion_; }
   /// The point that torques are about: the centre of rotation where it is now.
@@ -60,6 +64,7 @@ class RigidWall {
 
   std::string name_;
   int material_;
+  std::optional<Expression> temperature_;
   std::variant<PlaneShape, SphereShape, RevolutionShape, FacetShape> shape_;
   bool still_shape_ = false;  ///< its rotation leaves the shape as it is
   bool endless_ = false;

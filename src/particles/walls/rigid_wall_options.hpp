@@ -10,7 +10,7 @@ namespace silt {
 
 /// The options `-wall_<name>_...`: a wall that is no boundary of the mesh.
 struct RigidWallOptions {
-  std::string type = "plane", material, side = "inside", ends = "open";
+  std::string type = "plane", material, temperature, side = "inside", ends = "open";
   InputFile file;
   std::optional<Vec3> point, normal, axis, lower, upper;
   std::optional<double> radius, end_radius, length;

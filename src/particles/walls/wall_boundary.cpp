@@ -36,6 +36,12 @@ std::vector<WallBoundary> read_wall_boundaries(const Mesh& mesh, Options& option
                     : chosen.role == "outlet" ? BoundaryRole::outlet
                                               : BoundaryRole::open;
     boundary.material = wall_material(chosen.material, prefix, options, materials);
+    if (!chosen.temperature.empty()) {
+      if (boundary.role != BoundaryRole::wall)
+        throw UserError(fmt::format("option -{}_wall_temperature: particles meet no wall there (-{}_particles {})",
+                                    prefix, prefix, chosen.role));
+      boundary.temperature.emplace(prefix + "_wall_temperature", chosen.temperature);
+    }
     // The velocity of an inflow is the fluid's; that of a wall is its own.
     if (type.empty() || type == "no_slip") {
       SurfaceMotion motion;

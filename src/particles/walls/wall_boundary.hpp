@@ -18,12 +18,15 @@ enum class BoundaryRole {
 
 /// The options `-boundary_<name>_...` of the particles.
 struct WallBoundaryOptions {
-  std::string role = "wall", material;
+  std::string role = "wall", material, temperature;
   void options(OptionGroup& option) {
     option("particles", role, {"wall", "outlet", "open"},
            "what the boundary is to particles: a wall (default of every fluid type but pressure), an outlet where they "
            "leave, or open (no wall; a particle that passes is lost: -particles_lost)");
     option("material", material, "material of the wall; default: the first material in alphabetical order");
+    option("wall_temperature", temperature,
+           "K, formula in x, y, z, t: temperature of the wall, which particles that touch it are warmed by "
+           "(-heat_conduction); default: it conducts no heat to them");
   }
 };
 
@@ -35,6 +38,7 @@ struct WallBoundary {
   int material = 0;                        ///< index into the materials
   Vec3 velocity = Vec3::Zero();            ///< m/s, when `motion` is empty
   std::optional<VectorExpression> motion;  ///< velocity that varies in space or time
+  std::optional<Expression> temperature;   ///< K; none: no heat is conducted
 
   Vec3 velocity_at(const Vec3& point, double time) const { return motion ? (*motion)(point, time) : velocity; }
 };

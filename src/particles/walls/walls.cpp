@@ -52,6 +52,18 @@ Walls::Walls(const Mesh& mesh, Options& options, const std::vector<std::string>&
   for (const auto& wall : rigid_) names_.push_back(wall.name());
 }
 
+int Walls::material(int wall) const {
+  const int boundaries = static_cast<int>(boundaries_.size());
+  return wall < boundaries ? boundaries_[wall].material : rigid_[wall - boundaries].material();
+}
+
+const Expression* Walls::temperature(int wall) const {
+  const int boundaries = static_cast<int>(boundaries_.size());
+  if (wall >= boundaries) return rigid_[wall - boundaries].temperature();
+  const auto& temperature = boundaries_[wall].temperature;
+  return temperature ? &*temperature : nullptr;
+}
+
 void Walls::localise(double reach) {
   reach_ = reach;
   WallShape near;

@@ -40,6 +40,9 @@ class Walls {
   /// All walls by the number that stands in WallPoint::boundary: the boundaries of the mesh, then the rigid walls.
   int count() const { return static_cast<int>(names_.size()); }
   const std::string& name(int wall) const { return names_[wall]; }
+  int material(int wall) const;
+  /// K, of a wall that conducts heat; null: it does not.
+  const Expression* temperature(int wall) const;
   const std::vector<RigidWall>& rigid() const { return rigid_; }
 
   /// Remembers which of the particles may come within `gap` of a wall before having moved `skin`/2, and moved() being
