@@ -91,6 +91,7 @@ ParticleStatistics::Item ParticleStatistics::parse(const std::string& name, cons
     if (error == std::errc() && end == last && value > 0 && value <= 100) return {kind, -1, value / 100};
   }
   std::vector<std::string> materials;
+  materials.reserve(static_cast<size_t>(particles.materials().count()));
   for (int k = 0; k < particles.materials().count(); ++k) materials.push_back(particles.materials()[k].name);
   if (const auto material = rest(what, "share_")) {
     const auto found = std::find(materials.begin(), materials.end(), *material);
