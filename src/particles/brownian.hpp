@@ -44,9 +44,8 @@ struct BrownianWay {
 
 /// Brownian motion (3.293) by the exact step of Ornstein & Uhlenbeck (F5, docs/theory/fluid_forces.md): over a substep
 /// the drag of a particle goes with jointly normal changes of velocity and position, so that the friction of the motion
-/// is that of the noise for every step. Spin and
-/// angle of a particle with viscous torque likewise. The random numbers are a
-/// function of particle id, time and seed: any ranks give the same.
+/// is that of the noise for every step. Spin and angle of a particle with viscous torque likewise. The random numbers
+/// are a function of particle id, time and seed: any ranks give the same.
 class Brownian {
  public:
   explicit Brownian(const BrownianOptions& options) : options_(options) {}
