@@ -59,6 +59,9 @@ class ContactLaws {
     prepare();
   }
 
+  /// The slip takes the spins at the radius instead of the arm to the contact point, R_i w_i + R_j w_j.
+  void take_slip_at_radius(bool at_radius) { setup_.slip_at_radius = at_radius; }
+
   /// Duration of a collision of this pair of materials. s
   double duration(int a, int b, const Encounter& encounter) const;
   /// The same for the forces beside the normal law.

@@ -52,6 +52,7 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
   contacts = ContactLists(laws_.history_components());
   wall_contacts = WallContacts(laws_.history_components(), liquid_.active());
   laws_.read_springs_at(1 - options_.late_share());
+  laws_.take_slip_at_radius(options_.slip_arm == "radius");
   if (options_.energy) energy_ = std::make_unique<EnergyLedger>(store.columns);
   if (walls_.count() > 0) last_wall_ = store.columns.add({.name = "last_wall", .output = false, .needed = false});
   if (options_.orientation)

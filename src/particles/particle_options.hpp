@@ -13,7 +13,7 @@ struct ParticleOptions {
   std::optional<double> speed;
   double skin = 0, overlap_limit = 0.25;
   std::string lost = "stop", deep = "stop", fast = "stop", instructions = "auto";
-  std::string integrator = "velocity_verlet";
+  std::string integrator = "velocity_verlet", slip_arm = "contact_point";
   bool plane = false, fixed = false, orientation = false, energy = false;
   /// The share of a step's new force in the change of velocity over that step.
   double late_share() const { return integrator == "velocity_verlet" ? 0.5 : 0.0; }
@@ -37,6 +37,9 @@ struct ParticleOptions {
     option("fast", fast, {"stop", "warn"}, "what to do about a particle that moves more than its radius in a step");
     option("integrator", integrator, {"velocity_verlet", "semi_implicit_euler"},
            "velocity_verlet: second order in the step; semi_implicit_euler: first order, the velocity first");
+    option("slip_arm", slip_arm, {"contact_point", "radius"},
+           "where the slip of a contact takes the spins: contact_point, where the force acts; radius: at the whole "
+           "radius, as LAMMPS does");
     option("orientation", orientation,
            "particles carry their orientation, a unit quaternion (w, x, y, z; start 1, 0, 0, 0), for the output");
     option("energy", energy, "work on the particles by mechanism, every step, in energy.csv");

@@ -23,10 +23,11 @@ struct LawStage {
 struct LawSetup {
   LawStage normal, adhesion, dlvo, bridge, interfacial, lubrication, tangential, rolling, twisting;
   int materials = 1;
-  bool extended = false;  ///< a law reads the extended fields of Contact
-  bool cohesive = false;  ///< a law acts beyond touching or pulls
-  bool jumping = false;   ///< the force of a law jumps within a step (force_jump.hpp)
-  bool traced = false;    ///< the sweep's trace is wanted
+  bool extended = false;        ///< a law reads the extended fields of Contact
+  bool cohesive = false;        ///< a law acts beyond touching or pulls
+  bool jumping = false;         ///< the force of a law jumps within a step (force_jump.hpp)
+  bool traced = false;          ///< the sweep's trace is wanted
+  bool slip_at_radius = false;  ///< the slip takes the spins at the radius, not at the arm to the contact point
   int history_components = 0;
   double enter_gap = 0;  ///< m, a pair is taken among the contacts when the surfaces are nearer than this
   double leave_gap = 0;  ///< m, and leaves them when they are further apart than this

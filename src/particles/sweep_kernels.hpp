@@ -99,12 +99,18 @@ SILT_INLINE void slip_of_pairs(const PairSweep& sweep, Block& block, int first, 
   const double* rotation = reinterpret_cast<const double*>(sweep.rotation);
   constexpr int stride = sizeof(Rotation) / sizeof(double);
   const Pack materials(sweep.laws.materials);
+  const bool at_radius = sweep.laws.slip_at_radius;
   for (int o = 0; o < count; o += lanes) {
     const int *i = sweep.pairs.i + first + o, *j = sweep.pairs.j + first + o;
     Pack wi[4], wj[4], velocity[3], rolling[3];
     load_columns(rotation, stride, 0, i, wi);
     load_columns(rotation, stride, 0, j, wj);
-    const Pack arm_i = load(&block.arm_i[o]), arm_j = load(&block.arm_j[o]);
+    Pack arm_i = load(&block.arm_i[o]), arm_j = load(&block.arm_j[o]);
+    if (at_radius) {
+      const Pack give = Pack(0.5) * load(&block.overlap[o]);
+      arm_i = arm_i + give;
+      arm_j = arm_j + give;
+    }
     Contact<Pack> contact;
     for (int d = 0; d < 3; ++d) {
       contact.normal[d] = load(&block.normal[d][o]);
@@ -274,7 +280,7 @@ void wall_sweep(WallSweep& sweep) {
       for (int d = 0; d < 3; ++d) {
         contact.normal[d] = point.normal[d];
         velocity[d] = particle.velocity[d] - point.velocity[d];
-        rolling[d] = point.distance * rotation.spin[d];
+        rolling[d] = (sweep.laws.slip_at_radius ? particle.radius : point.distance) * rotation.spin[d];
       }
       set_relative_motion(contact, velocity, rolling);
       for (int d = 0; d < 3; ++d) {

@@ -85,7 +85,7 @@ inline Loads loads_of(const ContactLaws& laws, Contact<double> contact, const Pa
 }
 
 /// The contact of two spheres, from their motion.
-inline Contact<double> contact_of(const Body& a, const Body& b, double& arm_i, double& arm_j) {
+inline Contact<double> contact_of(const Body& a, const Body& b, bool slip_at_radius, double& arm_i, double& arm_j) {
   Contact<double> contact;
   const Vec3 apart = vec3(a.position) - vec3(b.position);
   const double r = apart.norm();
@@ -102,8 +102,9 @@ inline Contact<double> contact_of(const Body& a, const Body& b, double& arm_i, d
   arm_i = a.radius - contact.overlap / 2, arm_j = b.radius - contact.overlap / 2;
   contact.approach = -relative.dot(n);
   // Velocities of the two material points at the contact.
-  const Vec3 at_i = vec3(a.velocity) + Vec3(vec3(a.spin)).cross(-arm_i * n);
-  const Vec3 at_j = vec3(b.velocity) + Vec3(vec3(b.spin)).cross(arm_j * n);
+  const double from_i = slip_at_radius ? a.radius : arm_i, from_j = slip_at_radius ? b.radius : arm_j;
+  const Vec3 at_i = vec3(a.velocity) + Vec3(vec3(a.spin)).cross(-from_i * n);
+  const Vec3 at_j = vec3(b.velocity) + Vec3(vec3(b.spin)).cross(from_j * n);
   vec3(contact.slip) = (at_i - at_j) - (at_i - at_j).dot(n) * n;
   vec3(contact.spin) = vec3(a.spin) - vec3(b.spin);
   return contact;
@@ -111,7 +112,7 @@ inline Contact<double> contact_of(const Body& a, const Body& b, double& arm_i, d
 
 inline Loads one_contact(const ContactLaws& laws, const Body& a, const Body& b, double dt, double* history) {
   double arm_i, arm_j;
-  const Contact<double> contact = contact_of(a, b, arm_i, arm_j);
+  const Contact<double> contact = contact_of(a, b, laws.setup().slip_at_radius, arm_i, arm_j);
   const PairProperties pair = laws.pair(static_cast<int>(a.material), static_cast<int>(b.material));
   return loads_of(laws, contact, pair, arm_i, arm_j, dt, history);
 }

@@ -91,6 +91,32 @@ TEST_CASE("A sliding ball comes to roll at five sevenths of its speed after 2/7 
   }
 }
 
+TEST_CASE(
+    "A soft ball comes to roll over the arm to the contact point, or over its radius where the slip is taken there",
+    "[particles]") {
+  const double radius = 0.5e-3, v0 = 0.01;
+  for (const bool at_radius : {false, true}) {
+    BoxCase setup;
+    setup.box(Vec3(-5e-3, -5e-3, 0), Vec3(25e-3, 5e-3, 10e-3));
+    setup.gravity = {0, 0, -9.81};
+    setup.set("material_bead_density", "1e4").set("material_bead_friction", "0.5");
+    setup.set("material_bead_young_modulus", "1e4").set("material_bead_restitution", "0.2");
+    if (at_radius) setup.set("particles_slip_arm", "radius");
+    BoxRun run(setup);
+    const PairProperties& pair = run.particles.materials().pair(0, 0);
+    const double mass = 1e4 * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+    const double rest = std::pow(mass * 9.81 / (4.0 / 3.0 * pair.effective_young * std::sqrt(radius)), 2.0 / 3.0);
+    REQUIRE(rest > 0.05 * radius);
+    run.particles.add({sphere(Vec3(0, 0, radius - rest), Vec3(v0, 0, 0), radius)});
+    run.particles.advance(0, 0.1);
+    const auto state = gather(run.particles).at(0);
+    // Friction at the arm a turns the ball: w = (v0 - v) m a/I; it ends where v = w times the arm of the slip.
+    const double arm = radius - rest, slip = at_radius ? radius : arm, share = 2.5 * arm * slip / (radius * radius);
+    CHECK(state.v[0] == Approx(v0 * share / (1 + share)).epsilon(2e-3));
+    CHECK(state.v[0] == Approx(state.w[1] * slip).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("A ball that slides all through an oblique impact loses mu (1 + e) of its normal speed tangentially",
           "[particles]") {
   // Chung & Ooi test 4, sliding branch: aluminium oxide, 3.9 m/s, e 0.98, mu 0.092; the angle is to the normal.

@@ -18,13 +18,14 @@ bool can_run(const std::string& name) {
 }
 
 /// Random pairs through the blocks, against the same pairs one at a time.
-void compare(const LawCase& setup, const char* instructions, bool several, unsigned seed) {
+void compare(const LawCase& setup, const char* instructions, bool several, unsigned seed, bool slip_at_radius = false) {
   LawCase all = setup;
   if (several) {
     all.set("material_rock_density", "3000").set("material_rock_young_modulus", "3e8");
     all.set("pair_bead_rock_friction", "0.7");
   }
-  const LawRun run(all, 0.4e-3, 1.2e-3);
+  LawRun run(all, 0.4e-3, 1.2e-3);
+  run.laws.take_slip_at_radius(slip_at_radius);
   constexpr int count = 203;  // not a multiple of the block or of any pack
   const int components = run.laws.history_components();
   Store store;
@@ -118,6 +119,13 @@ TEST_CASE("Adhesions, double layers and friction share a contact as they do one 
         compare(setup, instructions, seed % 3 == 0, seed);
         ++seed;
       }
+}
+
+TEST_CASE("The blocks take the slip at the radius as one contact does", "[particles]") {
+  for (const char* instructions : {"plain", "avx2", "avx512"})
+    if (can_run(instructions))
+      for (const bool several : {false, true})
+        compare(LawCase().choose("tangential", "mindlin"), instructions, several, 19, true);
 }
 
 TEST_CASE("Any normal law goes with any tangential, rolling and twisting law in the blocks", "[particles]") {
