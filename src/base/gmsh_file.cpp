@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <vector>
@@ -49,6 +50,10 @@ class Scanner {
     const size_t start = at_;
     while (at_ < text_.size() && !std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
     return text_.substr(start, at_ - start);
+  }
+  bool next_is(const std::string& mark) {
+    skip_blanks();
+    return text_.compare(at_, mark.size(), mark) == 0;
   }
   void expect(const std::string& mark) {
     if (word() != mark) fail(mark + " is missing");
@@ -125,6 +130,8 @@ class Check {
       } else if (mark == "$Elements") {
         elements();
         has_elements = true;
+      } else if (mark == "$Periodic") {
+        periodic();
       } else {
         scan_.skip_past("$End" + mark.substr(1));
         continue;
@@ -279,6 +286,36 @@ class Check {
         ++found;
       }
     }
+  }
+
+  /// Nodes that repeat others. Format 2.2 writes this section as text also in binary files.
+  void periodic() {
+    const bool binary = scan_.binary;
+    scan_.end_line();
+    if (!newer_) scan_.binary = false;
+    std::map<long long, long long> repeats;
+    for (size_t links = scan_.count(scan_.size(), "periodic links", 8); links > 0; --links) {
+      for (int k = 0; k < 3; ++k) scan_.integer();
+      if (newer_) {
+        for (size_t left = scan_.count(scan_.size(), "numbers of a transformation", 2); left > 0; --left) scan_.real();
+      } else {
+        scan_.line();
+        if (scan_.next_is("Affine")) scan_.line();
+      }
+      for (size_t left = scan_.count(scan_.size(), "periodic nodes", 4); left > 0; --left) {
+        const long long node = scan_.size(), other = scan_.size();
+        for (const long long tag : {node, other})
+          if (!std::binary_search(tags_.begin(), tags_.end(), tag))
+            scan_.fail(fmt::format("a periodic node {}, which is not there", tag));
+        if (node != other) repeats[node] = other;
+      }
+    }
+    for (const auto& [node, other] : repeats) {
+      int steps = 0;  // an edge repeats others along three axes at most
+      for (auto at = repeats.find(other); at != repeats.end(); at = repeats.find(at->second))
+        if (++steps > 3) scan_.fail(fmt::format("the node {} repeats itself over others", node));
+    }
+    scan_.binary = binary;
   }
 
   Scanner scan_;

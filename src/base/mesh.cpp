@@ -11,6 +11,7 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/mesh_periods.hpp"
 #include "base/text.hpp"
 
 namespace silt {
@@ -126,7 +127,9 @@ Mesh::Mesh(const MeshOptions& options, const Partition& partition) {
   if (mpi_any(inverted)) throw UserError("the mesh has a cell that is inverted or has no volume");
   smallest_edge = mpi_min(edge);
   volume = mpi_sum(sum);
+  if (options.type == "file") find_periods(*this, options.file);
   extract_boundaries();
+  if (options.type == "file") check_periodic_ends(*this, options.file);
 }
 
 void Mesh::extract() {

@@ -94,8 +94,10 @@ DmHandle create_box(const MeshOptions& options) {
   }
   for (int d = 0; d < dimension; ++d)
     if (wrap[d])
-      throw UserError(fmt::format("option -mesh_periodic: not available for a {} mesh; use hexahedron or quadrilateral",
-                                  options.cell));
+      throw UserError(
+          fmt::format("option -mesh_periodic: not available for a box of {}s; use hexahedron or quadrilateral, "
+                      "or a Gmsh file with periodic sides",
+                      options.cell));
   std::vector<double> points;
   std::vector<PetscInt> cells;
   if (mpi_rank() == 0) {
@@ -184,7 +186,7 @@ MeshOptions::MeshOptions(Options& options) {
 
 void MeshOptions::options(OptionGroup& option) {
   option("type", type, {"box", "file"}, "a box of cells, or a Gmsh file; a file when one is named");
-  option("file", file, "Gmsh file (2.2 or 4.1) with a physical name for every boundary");
+  option("file", file, "Gmsh file (2.2 or 4.1) with a physical name for every boundary; its periodic sides repeat");
   option("cell", cell, {"hexahedron", "tetrahedron", "quadrilateral", "triangle"},
          "cell of a box; two-dimensional cells make a 2D mesh");
   option("lower", lower, "m", "lowest corner of the box");

@@ -17,7 +17,8 @@ import numpy as np
 GEOMETRY = """\
 SetFactory("OpenCASCADE");
 Box(1) = {0, 0, 0, 0.02, 0.02, 0.02};
-MeshSize{:} = 0.01;
+MeshSize{:} = 0.0066;
+Periodic Surface {2} = {1} Translate {0.02, 0, 0};
 Physical Surface("floor") = {5};
 Physical Surface("lid") = {6};
 Physical Surface("sides") = {1, 2, 3, 4};
