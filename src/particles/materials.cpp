@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.hpp"
 
@@ -50,6 +51,7 @@ Materials::Materials(Options& options) {
   for (int a = 0; a < n; ++a)
     for (int b = 0; b < n; ++b) pairs_[a * n + b] = mean_of(materials_[std::min(a, b)], materials_[std::max(a, b)]);
 
+  std::map<std::pair<int, int>, std::string> named;
   for (const auto& name : options.names("pair", Options::declared<PairOverride>())) {
     int first = -1, second = -1;
     for (int a = 0; a < n; ++a)
@@ -62,6 +64,9 @@ Materials::Materials(Options& options) {
       throw UserError(fmt::format("-pair_{}_...: {} is not a pair of materials; the pairs are {}", name, name,
                                   fmt::join(known, ", ")));
     }
+    if (const std::string& before = named[{std::min(first, second), std::max(first, second)}]; !before.empty())
+      throw UserError(fmt::format("-pair_{}_... and -pair_{}_... are the same pair of materials", before, name));
+    named[{std::min(first, second), std::max(first, second)}] = name;
     PairOverride given;
     options.read("pair_" + name, given);
     note_restitution("pair_" + name);

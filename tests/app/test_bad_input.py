@@ -118,6 +118,7 @@ WRONG = [
     ("a restitution above one", {}, options("-material_bead_restitution", "1.5"), ["-material_bead_restitution"]),
     ("a Poisson ratio above one half", {}, options("-material_bead_poisson_ratio", "0.7"), ["-material_bead_poisson_ratio"]),
     ("a pair of a material that is not there", {}, options("-pair_bead_steel_friction", "0.3"), ["steel"]),
+    ("a pair of materials given twice", {}, options("-material_steel_density", "7800", "-pair_bead_steel_friction", "0.3", "-pair_steel_bead_friction", "0.4"), ["-pair_bead_steel", "-pair_steel_bead", "same pair"]),
     ("an unknown drag law", {}, options("-drag_type", "gidaspov"), ["-drag_type", "gidaspow"]),
     ("an unknown normal law", {}, options("-normal_type", "hooke"), ["-normal_type", "linear"]),
     ("an unknown rolling law", {}, options("-rolling_type", "square"), ["-rolling_type", "constant"]),
