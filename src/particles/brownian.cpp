@@ -74,7 +74,9 @@ BrownianWay Brownian::act(Store& store, const Integration& step, double time) co
       const auto c = deviates(2), e = deviates(3);
       double way[3];
       for (int d = 0; d < 3; ++d) {
-        store.rotation[p].spin[d] += step.turn[d] * kick * c[d];
+        const double turned = step.turn[d] * kick * c[d];
+        drag.impulse[3] += turned / inverse_inertia * (store.rotation[p].spin[d] + 0.5 * turned);
+        store.rotation[p].spin[d] += turned;
         way[d] = step.turn[d] * (together * c[d] + alone * e[d]);
         if (step.turned) step.turned[p][d] += way[d];
       }

@@ -18,6 +18,7 @@ FORMS = {
     "a periodic direction": r"periodic: \[",
     "a driving pressure gradient": r"pressure_gradient:",
     "a driving mass flow": r"drive: \{[^}]*mass_flow:|drive_mass_flow:",
+    **{f"the turbulence model {name}": rf"turbulence: {name}\b" for name in ("realizable_k_epsilon", "sst_k_omega", "smagorinsky", "wale")},
     "an axisymmetric flow": r"symmetry: axisymmetric",
 }
 

@@ -141,6 +141,20 @@ TEST_CASE("What Brownian motion gives the particles is accounted to the drag, th
   CHECK((in.drag - suspension.run.particles.momentum()).norm() < 1e-12 * in.drag.norm());
 }
 
+TEST_CASE("The work that Brownian motion does is that of the fluid: what flies and turns has its energy from there",
+          "[brownian][mpi]") {
+  Suspension suspension(4, "1e-9");
+  suspension.advance(1e-8, Vec3::Zero(), pi * viscosity * std::pow(diameter, 3));
+  double work = 0, flight = 0, turning = 0;
+  for (int i = 0; i < suspension.run.particles.owned(); ++i) work += suspension.run.particles.fluid_action(i).work;
+  for (const auto& [id, s] : gather(suspension.run.particles)) {
+    flight += 0.5 * mass * vec3(s.v).squaredNorm();
+    turning += 0.05 * mass * diameter * diameter * vec3(s.w).squaredNorm();
+  }
+  CHECK(turning > 0.3 * flight);
+  CHECK(mpi_sum(work) == Approx(flight + turning).epsilon(1e-10));
+}
+
 TEST_CASE("Brownian orientations forget themselves as exp(-2 D_r t), for steps below and beyond the spin's response",
           "[brownian]") {
   // Debye 1929: the mean cosine of the angle turned, D_r = k_B T/k_r; the spin's response time is 3/10 of the
