@@ -23,6 +23,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 import matplotlib.tri as tri  # noqa: E402
 from matplotlib.ticker import MaxNLocator  # noqa: E402
 
+from verify import Case  # noqa: E402
+
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FOLDER = os.path.join(ROOT, "docs", "gallery", "fluid")
 # What of a mesh is worth seeing, where that is not all of it: heights, m.
@@ -53,6 +55,30 @@ def middle_plane(points, cells, values):
     return points[near, 0], points[near, 1], values[near]
 
 
+def cut(points, cells, values):
+    """The middle plane in z through tetrahedra of any shape: triangles (and halves of quadrilaterals), values on their corners."""
+    level = 0.5 * (points[:, 2].min() + points[:, 2].max()) + 1e-6 * numpy.ptp(points[:, 2])  # past the nodes
+    least = 1e-6 * numpy.ptp(points[:, 0]) * numpy.ptp(points[:, 1])  # slivers leave streaks
+    x, y, found = [], [], []
+    for cell in cells:
+        below = [node for node in cell if points[node, 2] < level]
+        above = [node for node in cell if points[node, 2] >= level]
+        if not below or not above:
+            continue
+        edges = [(a, b) for a in below for b in above]
+        if len(edges) == 4:  # around the quadrilateral
+            edges = [edges[0], edges[1], edges[3], edges[2]]
+        share = [(level - points[a, 2]) / (points[b, 2] - points[a, 2]) for a, b in edges]
+        corner = [((1 - s) * points[a, :2] + s * points[b, :2], (1 - s) * values[a] + s * values[b]) for s, (a, b) in zip(share, edges)]
+        for triangle in ([0, 1, 2], [0, 2, 3])[:len(corner) - 2]:
+            (ax, ay), (bx, by), (cx, cy) = (corner[k][0] for k in triangle)
+            if abs((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)) < least:
+                continue
+            for k in triangle:
+                x.append(corner[k][0][0]), y.append(corner[k][0][1]), found.append(corner[k][1])
+    return tri.Triangulation(x, y, numpy.arange(len(x)).reshape(-1, 3)), numpy.array(found)
+
+
 def picture(name, title, output):
     folder = os.path.join(output, "fluid")
     last = sorted(glob.glob(os.path.join(folder, "[0-9]*.h5")))[-1]
@@ -67,7 +93,9 @@ def picture(name, title, output):
             label, values = "temperature, K", fields["temperature"][:].ravel()
         elif name == "wall_distance":
             label, values = "wall distance, m", fields["wall_distance"][:].ravel()
-    if cells.shape[1] == 8 or numpy.ptp(points[:, 2]) > 0:
+    if cells.shape[1] == 4 and numpy.ptp(points[:, 2]) > 0:
+        mesh2, values = cut(points, cells, values)
+    elif cells.shape[1] == 8:
         x, y, values = middle_plane(points, cells, values)
         mesh2 = tri.Triangulation(x, y)
     else:
@@ -79,8 +107,11 @@ def picture(name, title, output):
     lowest, highest = values.min(), numpy.percentile(values, 95 if name in SINGULAR else 99.9)
     if highest - lowest < 1e-3 * abs(highest):  # uniform: no colours for rounding errors
         lowest, highest = 0, 1.5 * highest
-    drawn = axes.tripcolor(mesh2, values, shading="gouraud", cmap="viridis", vmin=lowest, vmax=highest)
-    figure.colorbar(drawn, ax=axes, label=label)
+    if len(mesh2.triangles) * 3 == len(mesh2.x):  # cut: shading draws the tips of thin triangles too long
+        drawn = axes.tricontourf(mesh2, values, levels=numpy.linspace(lowest, highest, 65), cmap="viridis", extend="max")
+    else:
+        drawn = axes.tripcolor(mesh2, values, shading="gouraud", cmap="viridis", vmin=lowest, vmax=highest)
+    figure.colorbar(drawn, ax=axes, label=label, ticks=MaxNLocator(7))
     axes.set_aspect("equal" if max(width, height) < 12 * min(width, height) and height < 2 * width and name not in HEIGHTS else "auto")
     if name in HEIGHTS:
         axes.set_ylim(*HEIGHTS[name])
@@ -136,6 +167,7 @@ def main():
             continue
         output = os.path.join(ROOT, "output", "pictures", name)
         if not (arguments.keep and glob.glob(os.path.join(output, "fluid", "[0-9]*.h5"))):
+            Case(os.path.relpath(path, ROOT)).make_mesh()
             subprocess.run([os.path.join(ROOT, "build", "silt"), path, "-output_directory", output], cwd=ROOT, stdout=subprocess.DEVNULL)
         try:
             picture(name, name, output)

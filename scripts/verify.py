@@ -66,7 +66,7 @@ class Case:
             return
         *options, geometry, mesh = self.gmsh
         os.makedirs(os.path.dirname(os.path.join(ROOT, mesh)), exist_ok=True)
-        subprocess.run(["gmsh", "-v", "1", *options, "-2", "-format", "msh22", "-o", mesh, geometry], cwd=ROOT, check=True, stdin=subprocess.DEVNULL)
+        subprocess.run(["gmsh", "-v", "1", *([] if "-3" in options else ["-2"]), *options, "-format", "msh22", "-o", mesh, geometry], cwd=ROOT, check=True, stdin=subprocess.DEVNULL)
 
 
 def find_cases():
