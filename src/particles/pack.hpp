@@ -6,7 +6,9 @@
 
 // Everything here is inlined: no vector crosses a call, so its calling convention does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 
 #include "particles/real.hpp"
 
