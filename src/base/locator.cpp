@@ -259,6 +259,43 @@ Place Locator::find_kind(const double* x, int hint) const {
   return lowest_around<kind>(moved, found);
 }
 
+template <Cell kind>
+void Locator::well_inside_kind(const double* x, std::size_t stride, const int* cells, int count,
+                               unsigned char* inside) const {
+  for (int k = 0; k < count; ++k) {
+    const int cell = cells[k];
+    if (cell < 0 || !(FacetTable<kind>::simplex || affine_[cell])) {
+      inside[k] = 0;
+      continue;
+    }
+    constexpr int dimension = cell_dimension(kind);
+    const InverseMap& map = maps_[cell];
+    const double* at = x + k * stride;
+    const double r[3] = {at[0] - map.origin[0], at[1] - map.origin[1], dimension == 3 ? at[2] - map.origin[2] : 0.0};
+    double least = 1, sum = 0;
+    for (int i = 0; i < dimension; ++i) {
+      const double xi = map.inverse[i][0] * r[0] + map.inverse[i][1] * r[1] + map.inverse[i][2] * r[2];
+      least = std::min(least, FacetTable<kind>::simplex ? xi : std::min(xi, 1 - xi));
+      sum += xi;
+    }
+    inside[k] = (FacetTable<kind>::simplex ? std::min(least, 1 - sum) : least) > 2 * tie_tolerance;
+  }
+}
+
+void Locator::well_inside(const double* x, std::size_t stride, const int* cells, int count,
+                          unsigned char* inside) const {
+  switch (mesh_.cell) {
+    case Cell::triangle:
+      return well_inside_kind<Cell::triangle>(x, stride, cells, count, inside);
+    case Cell::quadrilateral:
+      return well_inside_kind<Cell::quadrilateral>(x, stride, cells, count, inside);
+    case Cell::tetrahedron:
+      return well_inside_kind<Cell::tetrahedron>(x, stride, cells, count, inside);
+    case Cell::hexahedron:
+      return well_inside_kind<Cell::hexahedron>(x, stride, cells, count, inside);
+  }
+}
+
 Place Locator::find(const double* x, int hint) const {
   switch (mesh_.cell) {
     case Cell::triangle:

@@ -41,6 +41,11 @@ class Locator {
   Place find(const double* x, int hint = -1) const;
   Place find(const Vec3& x, int hint = -1) const { return find(x.data(), hint); }
 
+  /// Which of `count` points, `stride` doubles apart, are so far inside the cells they were in that find() with these
+  /// as hints would say `inside` there without a wrap: 1, else 0 (ask find(), which may say the same). Most points that
+  /// move are.
+  void well_inside(const double* x, std::size_t stride, const int* cells, int count, unsigned char* inside) const;
+
   /// find() for many points; `hints` is empty or gives a cell for each.
   std::vector<Place> find(std::span<const Vec3> points, std::span<const int> hints = {}) const;
 
@@ -86,6 +91,8 @@ class Locator {
   Place lowest_around(const double* x, const Place& place) const;
   template <Cell kind>
   Place find_kind(const double* x, int hint) const;
+  template <Cell kind>
+  void well_inside_kind(const double* x, std::size_t stride, const int* cells, int count, unsigned char* inside) const;
   template <Cell kind>
   void build_maps();
   void build_bins();

@@ -55,7 +55,7 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   const double gap = laws_.setup().leave_gap;
   const double reach = 2 * largest_radius_ + gap + skin_;
   const CellGrid grid(lower, upper, mesh.lower, periods_, reach, store.owned);
-  const Bins own(sort_along(grid, carried), store);
+  Bins own(sort_along(grid, carried), store, mpi_size() > 1);
   halo_.build(store, periods_, grid, own, reach, gap + skin_);
   store.reserve(store.all());
   store.place_padding();

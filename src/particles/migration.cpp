@@ -61,31 +61,42 @@ void Migration::exchange(std::vector<std::vector<char>>& outgoing, std::vector<c
   for (auto& buffer : outgoing) buffer.clear();
 }
 
-bool Migration::all_at_home(Store& store) {
-  std::vector<int> cell(store.owned);
-  bool away = false;
-  for (int p = 0; p < store.owned && !away; ++p) {
-    const Place place = locator_.find(store.motion[p].position, store.cell[p]);
-    // A wrap moves the particle by a period, and with it the frame its neighbours' lists were built in.
-    away = !place.inside() || place.wrap != std::array<int, 3>{0, 0, 0};
-    cell[p] = place.cell;
+/// Calls act(particle, its place) for those not well inside the cell they were in.
+template <class Act>
+void Migration::each_on_the_move(const Store& store, Act&& act) const {
+  constexpr int block = 256, stride = sizeof(Motion) / sizeof(double);
+  unsigned char inside[block];
+  for (int first = 0; first < store.owned; first += block) {
+    const int count = std::min(block, store.owned - first);
+    locator_.well_inside(store.motion[first].position, stride, &store.cell[first], count, inside);
+    for (int k = 0; k < count; ++k)
+      if (!inside[k]) act(first + k, locator_.find(store.motion[first + k].position, store.cell[first + k]));
   }
+}
+
+bool Migration::all_at_home(Store& store) {
+  std::vector<std::pair<int, int>> moved;  // who came into which cell
+  bool away = false;
+  each_on_the_move(store, [&](int p, const Place& place) {
+    // A wrap moves the particle by a period, and with it the frame its neighbours' lists were built in.
+    away = away || !place.inside() || place.wrap != std::array<int, 3>{0, 0, 0};
+    moved.emplace_back(p, place.cell);
+  });
   if (mpi_any(away)) return false;
-  store.cell.swap(cell);
+  for (const auto& [p, cell] : moved) store.cell[p] = cell;
   return true;
 }
 
 bool Migration::any_away(Store& store) {
   away_.clear();
-  for (int p = 0; p < store.owned; ++p) {
-    const Place place = locator_.find(store.motion[p].position, store.cell[p]);
+  each_on_the_move(store, [&](int p, const Place& place) {
     if (place.inside()) {
       store.cell[p] = place.cell;
       wrap(locator_, place, store.motion[p]);
     } else {
       away_.push_back({p, place});
     }
-  }
+  });
   return mpi_any(!away_.empty());
 }
 

@@ -41,6 +41,8 @@ class Migration {
 
  private:
   struct Packet;
+  template <class Act>
+  void each_on_the_move(const Store& store, Act&& act) const;
   void exchange(std::vector<std::vector<char>>& outgoing, std::vector<char>& incoming);
 
   Locator locator_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace silt {
 
@@ -23,7 +24,10 @@ CellGrid::CellGrid(const Vec3& lower, const Vec3& upper, const Vec3& origin, con
     }
     if (total <= most) break;
   }
-  for (int d = 0; d < 3; ++d) inverse_[d] = extent[d] > 0 ? count_[d] / extent[d] : 0;
+  for (int d = 0; d < 3; ++d) {
+    inverse_[d] = extent[d] > 0 ? count_[d] / extent[d] : 0;
+    largest_ = std::max(largest_, extent[d]);
+  }
 }
 
 int CellGrid::neighbours(int cell, Run* run) const {
@@ -60,19 +64,30 @@ int CellGrid::neighbours(int cell, Run* run) const {
   return runs;
 }
 
-int CellGrid::later_rows(int row, int* rows, int& first, int& last) const {
-  const int y = row % count_[1], z = row / count_[1];
-  const auto at_a_wrap = [&](int d, int at) { return wraps_[d] && (at == 0 || at == count_[d] - 1); };
-  first = last = 0;
-  if (at_a_wrap(1, y) || at_a_wrap(2, z)) return 0;
-  first = wraps_[0] ? 1 : 0;
-  last = std::max(first, wraps_[0] ? count_[0] - 1 : count_[0]);
+bool CellGrid::each_once() const {
+  for (int d = 0; d < 3; ++d)
+    if (wraps_[d] && count_[d] < 3) return false;
+  return true;
+}
+
+int CellGrid::later_rows(int row, Row* rows) const {
+  const int at[2] = {row % count_[1], row / count_[1]};
   int found = 0;
-  rows[found++] = row;
-  if (y + 1 < count_[1]) rows[found++] = row + 1;
-  if (z + 1 < count_[2])
-    for (int beside = std::max(y - 1, 0); beside <= std::min(y + 1, count_[1] - 1); ++beside)
-      rows[found++] = (z + 1) * count_[1] + beside;
+  rows[found++] = {row, {0, 0}};
+  for (int z = -1; z <= 1; ++z)
+    for (int y = -1; y <= 1; ++y) {
+      Row beside{0, {0, 0}};
+      int to[2] = {at[0] + y, at[1] + z};
+      bool there = true;
+      for (int d = 0; d < 2; ++d) {
+        if (to[d] >= 0 && to[d] < count_[1 + d]) continue;
+        there = there && wraps_[1 + d];
+        beside.periods[d] = to[d] < 0 ? -1 : 1;
+        to[d] -= beside.periods[d] * count_[1 + d];
+      }
+      beside.row = to[1] * count_[1] + to[0];
+      if (there && beside.row > row) rows[found++] = beside;
+    }
   return found;
 }
 
@@ -95,10 +110,18 @@ CellOrder order_along(const CellGrid& grid, const Store& store) {
   return sorted;
 }
 
-Bins::Bins(CellOrder&& order, const Store& store) : start(std::move(order.start)), particle(std::move(order.order)) {
+Bins::Bins(CellOrder&& order, const Store& store, bool placed)
+    : start(std::move(order.start)), particle(std::move(order.order)) {
+  if (placed) place(store);
+}
+
+void Bins::place(const Store& store) {
   constexpr int widest = 8;  // pack
   const int n = store.owned;
-  for (auto* values : {&x, &y, &z, &r}) values->resize(n + widest);
+  for (auto* values : {&x, &y, &z, &r}) {
+    *values = std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(n) + widest);
+    std::fill_n(values->get() + n, widest, 0.0);
+  }
   for (int k = 0; k < n; ++k) {
     const Motion& motion = store.motion[particle[k]];
     x[k] = motion.position[0], y[k] = motion.position[1], z[k] = motion.position[2], r[k] = motion.radius;
@@ -130,53 +153,88 @@ bool any_within(const CellGrid& grid, const Bins& bins, const Periods& periods, 
   return false;
 }
 
-void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const Periods& periods,
+namespace {
+
+/// What the search along rows reads of the spheres, sorted as the bins: coordinates from the corner of the grid in
+/// single precision, and what is asked of those found.
+struct RowColumns {
+  std::unique_ptr<float[]> values;
+  std::unique_ptr<int[]> column;
+  std::unique_ptr<std::int64_t[]> id;
+  float *x[3], *radius;
+  double largest_radius = 0;
+
+  RowColumns(const CellGrid& grid, const Bins& own, const Store& store) {
+    constexpr int beyond = 8, ahead = 12;  // that may be read; that are fetched from memory
+    const int n = store.owned, room = n + beyond;
+    values = std::make_unique_for_overwrite<float[]>(4 * static_cast<std::size_t>(room));
+    column = std::make_unique_for_overwrite<int[]>(room);
+    id = std::make_unique_for_overwrite<std::int64_t[]>(room);
+    for (int d = 0; d < 3; ++d) x[d] = &values[static_cast<std::size_t>(d) * room];
+    radius = &values[3 * static_cast<std::size_t>(room)];
+    for (float* values_of : {x[0], x[1], x[2], radius}) std::fill_n(values_of + n, beyond, 0.0F);
+    const double* lower = grid.lower();
+    const int* particle = own.particle.data();
+    for (int k = 0; k < n; ++k) {
+      __builtin_prefetch(&store.motion[particle[k + ahead < n ? k + ahead : k]]);
+      const Motion& motion = store.motion[particle[k]];
+      for (int d = 0; d < 3; ++d) x[d][k] = static_cast<float>(motion.position[d] - lower[d]);
+      radius[k] = static_cast<float>(motion.radius);
+      largest_radius = std::max(largest_radius, motion.radius);
+      id[k] = store.id[particle[k]];
+    }
+    for (int r = 0, c = 0; r < grid.rows(); ++r)
+      for (int q = 0; q < grid.cells_a_row(); ++q, ++c)
+        for (int k = own.start[c]; k < own.start[c + 1]; ++k) column[k] = q;
+  }
+  /// What rounding may change of a gap of spheres within `reach`: a few units in the last place of coordinates that may
+  /// be a period further away. m
+  double uncertainty(const CellGrid& grid, double reach) const {
+    return 1e-6 * (grid.largest_extent() + 2 * (2 * largest_radius + reach));
+  }
+};
+
+}  // namespace
+
+void find_pairs(const CellGrid& grid, Bins& own, const Store& store, const Periods& periods,
                 const PairReach& pair_reach, const ContactMemory& memory, const Kernels& kernels, ContactLists& lists) {
-  const double per_skin = 1 / pair_reach.skin;
-  const auto remember = [&](int a, int b, double gap) {
-    const std::int64_t id_a = store.id[a], id_b = store.id[b];
-    const int i = id_a < id_b ? a : b, j = id_a < id_b ? b : a;
+  const double per_skin = 1 / pair_reach.skin, reach = pair_reach.leave_gap + pair_reach.skin;
+  // A pair is listed by its lower id; one that remembers stays a contact.
+  const auto remember = [&](int a, int b, std::int64_t id_a, std::int64_t id_b, double gap) {
+    const bool in_order = id_a < id_b;
+    const int i = in_order ? a : b, j = a + b - i;
     if (gap < pair_reach.memory_gap) {
-      const int p = i < store.owned ? i : j;
-      if (const double* history = memory.find(p, store.id[p == i ? j : i]); history) {
+      const bool holds = i < store.owned;
+      const int p = holds ? i : j;
+      if (const double* history = memory.find(p, holds == in_order ? id_b : id_a); history) {
         lists.add_contact(i, j, history, 1);
         return;
       }
     }
     lists.add_candidate(i, j, (gap - pair_reach.enter_gap) * per_skin);
   };
-  std::vector<int> found(1024), seeker(1024);
-  std::vector<double> squares(1024);
-  const auto make_room = [&](int room) {
-    if (room <= static_cast<int>(found.size())) return;
-    found.resize(2 * room), seeker.resize(2 * room), squares.resize(2 * room);
-  };
-  RowSearch row;
-  NearSearch& search = row.search;
-  search.x[0] = own.x.data(), search.x[1] = own.y.data(), search.x[2] = own.z.data(), search.radius = own.r.data();
-  search.periods = &periods;
-  search.reach = pair_reach.leave_gap + pair_reach.skin;
-  const auto use_room = [&] {
-    search.found = found.data(), search.square = squares.data();
-    row.seeker = seeker.data(), row.room = static_cast<int>(found.size());
-  };
 
   // One sphere against a cell and all around it.
+  NearSearch search;
+  search.periods = &periods;
+  search.reach = reach;
+  std::vector<int> found;
+  std::vector<double> squares;
   NearSearch::Stretch stretch[27];
   search.stretch = stretch;
   const auto look_around = [&](int cell) {
     CellGrid::Run run[27];
     const int runs = grid.neighbours(cell, run);
     search.stretches = 0;
-    int room = 8;
+    std::size_t room = 8;
     for (int q = 0; q < runs; ++q) {
       const NearSearch::Stretch one{own.start[run[q].first], own.start[run[q].last + 1]};
       if (one.begin == one.end) continue;
       stretch[search.stretches++] = one;
       room += one.end - one.begin;
     }
-    make_room(room);
-    use_room();
+    if (room > found.size()) found.resize(2 * room), squares.resize(2 * room);
+    search.found = found.data(), search.square = squares.data();
     search.across = periods.any;
   };
   const auto around = [&](const Motion& motion) {
@@ -184,43 +242,84 @@ void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const
     search.sphere[3] = motion.radius;
     kernels.near(search);
   };
+  const auto exact_gap = [&](int a, int b) {
+    const Motion &one = store.motion[a], &other = store.motion[b];
+    double square = 0;
+    for (int d = 0; d < 3; ++d) {
+      const double distance = image(one.position[d] - other.position[d], periods.length[d], periods.inverse[d]);
+      square += distance * distance;
+    }
+    return std::sqrt(square) - (one.radius + other.radius);
+  };
   const auto gap_of = [&](int k, double radius) { return std::sqrt(squares[k]) - (radius + own.r[found[k]]); };
 
-  // Particles of a rank stand along the cells, and a pair is found from the one that stands first: from its row where
-  // no periodic side is near.
-  const auto across_sides = [&](int first_cell, int last_cell) {
-    for (int c = first_cell; c < last_cell; ++c) {
+  // Particles of a rank stand along the cells, and a pair is found from the one that stands first.
+  const RowColumns columns(grid, own, store);
+  const double uncertain = columns.uncertainty(grid, reach);
+  const bool by_rows = grid.each_once() && uncertain < 0.1 * pair_reach.skin + 1e-3 * columns.largest_radius;
+  if (!own.x && !(by_rows && store.ghosts == 0)) own.place(store);
+  search.x[0] = own.x.get(), search.x[1] = own.y.get(), search.x[2] = own.z.get(), search.radius = own.r.get();
+  if (by_rows) {
+    RowSearch row;
+    for (int d = 0; d < 3; ++d) row.x[d] = columns.x[d];
+    row.radius = columns.radius;
+    row.column = columns.column.get();
+    row.cells = grid.cells_a_row();
+    row.period = static_cast<float>(periods.length[0]);
+    row.reach = static_cast<float>(reach + uncertain);
+    std::unique_ptr<int[]> seekers, partners;
+    std::unique_ptr<float[]> gaps, radii;
+    const auto make_room = [&](int room) {
+      row.room = room;
+      seekers = std::make_unique_for_overwrite<int[]>(room);
+      partners = std::make_unique_for_overwrite<int[]>(room);
+      gaps = std::make_unique_for_overwrite<float[]>(room);
+      radii = std::make_unique_for_overwrite<float[]>(room);
+      row.seeker = seekers.get(), row.found = partners.get(), row.gap = gaps.get(), row.radii = radii.get();
+    };
+    make_room(2048);
+    for (int r = 0; r < grid.rows(); ++r) {
+      CellGrid::Row rows[9];
+      row.rows = grid.later_rows(r, rows);
+      for (int q = 0; q < row.rows; ++q) {
+        row.row[q].start = &own.start[rows[q].row * row.cells];
+        for (int d = 0; d < 2; ++d)
+          row.row[q].shift[d] = static_cast<float>(rows[q].periods[d] * periods.length[1 + d]);
+      }
+      row.next = row.row[0].start[0], row.last = row.row[0].start[row.cells];
+      while (row.next < row.last) {
+        kernels.near_row(row);
+        for (int k = 0; k < row.count; ++k) {
+          const int s = row.seeker[k], f = row.found[k], a = own.particle[s], b = own.particle[f];
+          double gap = row.gap[k] - uncertain;  // pairs are looked at rather too early than too late
+          if (gap + 2 * uncertain > reach || std::abs(row.gap[k] - pair_reach.memory_gap) < uncertain) {
+            gap = exact_gap(a, b);
+            if (gap >= reach) continue;
+          }
+          remember(a, b, columns.id[s], columns.id[f], gap);
+        }
+        if (row.count == 0 && row.next < row.last) make_room(4 * row.needed);
+      }
+    }
+  } else {
+    for (int c = 0; c < grid.cells(); ++c) {
       if (own.start[c] == own.start[c + 1]) continue;
       look_around(c);
       for (int s = own.start[c]; s < own.start[c + 1]; ++s) {
         search.after = s;
         around(store.motion[own.particle[s]]);
-        for (int k = 0; k < search.count; ++k) remember(own.particle[s], own.particle[found[k]], gap_of(k, own.r[s]));
+        for (int k = 0; k < search.count; ++k)
+          remember(own.particle[s], own.particle[found[k]], columns.id[s], columns.id[found[k]], gap_of(k, own.r[s]));
       }
     }
-  };
-  row.cells = grid.cells_a_row();
-  for (int r = 0; r < grid.rows(); ++r) {
-    int rows[5];
-    const int here = r * row.cells;
-    row.rows = grid.later_rows(r, rows, row.cell, row.last);
-    for (int q = 0; q < row.rows; ++q) row.start[q] = &own.start[rows[q] * row.cells];
-    across_sides(here, here + row.cell);
-    while (row.cell < row.last) {
-      use_room();
-      kernels.near_row(row);
-      for (int k = 0; k < search.count; ++k)
-        remember(own.particle[seeker[k]], own.particle[found[k]], gap_of(k, own.r[seeker[k]]));
-      if (search.count == 0) make_room(row.needed);
-    }
-    across_sides(here + row.last, here + row.cells);
   }
   search.after = -1;
   for (int g = store.owned; g < store.all(); ++g) {
     const Motion& ghost = store.motion[g];
     look_around(grid.cell_of(ghost.position));
     around(ghost);
-    for (int k = 0; k < search.count; ++k) remember(own.particle[found[k]], g, gap_of(k, ghost.radius));
+    for (int k = 0; k < search.count; ++k)
+      remember(own.particle[found[k]], g, columns.id[found[k]], store.id[g], gap_of(k, ghost.radius));
   }
 }
 

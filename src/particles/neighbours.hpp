@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "base/vector.hpp"
@@ -32,14 +33,22 @@ class CellGrid {
   /// Rows of cells along x; cell c is the (c % cells_a_row())-th of row c / cells_a_row().
   int rows() const { return count_[1] * count_[2]; }
   int cells_a_row() const { return count_[0]; }
-  /// The row and those of its neighbours that have higher numbers, at most 5, of which the cells [first, last) have no
-  /// neighbour across a periodic side; first = last where none of the row is such.
-  int later_rows(int row, int* rows, int& first, int& last) const;
+  /// A row and how many periods further up in y and z it is met.
+  struct Row {
+    int row, periods[2];
+  };
+  /// The row and those of its neighbours that have higher numbers, also across periodic sides, at most 9; only where
+  /// each is met once.
+  int later_rows(int row, Row* rows) const;
+  /// Whether no two cells are neighbours on two sides: periodic directions have three at least.
+  bool each_once() const;
+  const double* lower() const { return lower_; }
+  double largest_extent() const { return largest_; }  ///< m, of what is covered
 
  private:
   int count_[3];
   bool wraps_[3];
-  double lower_[3], inverse_[3];
+  double lower_[3], inverse_[3], largest_ = 0;
 };
 
 /// The owned particles in the order of the cells of a grid.
@@ -50,12 +59,15 @@ struct CellOrder {
 };
 CellOrder order_along(const CellGrid& grid, const Store& store);
 
-/// Positions and radii of the owned particles, sorted along the cells of a grid, for searches.
+/// The owned particles, sorted along the cells of a grid, for searches.
 struct Bins {
-  std::vector<int> start;          ///< [cells + 1]
-  std::vector<int> particle;       ///< who stands where
-  std::vector<double> x, y, z, r;  ///< and a few more entries, for whole packs
-  Bins(CellOrder&& order, const Store& store);
+  std::vector<int> start;     ///< [cells + 1]
+  std::vector<int> particle;  ///< who stands where
+  /// Positions and radii, and a few more entries for whole packs. m
+  std::unique_ptr<double[]> x, y, z, r;
+  /// `placed`: with positions and radii, without which only find_pairs() can do.
+  Bins(CellOrder&& order, const Store& store, bool placed = true);
+  void place(const Store& store);
 };
 
 /// Whether one of the bins' particles has its surface nearer than `gap` to that of a sphere at x (3 doubles).
@@ -71,7 +83,7 @@ struct PairReach {
 /// Fills the lists, which are empty, with all pairs of two owned particles, or of one and a ghost, nearer than
 /// leave_gap
 /// + skin. `own`: the bins of the owned particles.
-void find_pairs(const CellGrid& grid, const Bins& own, const Store& store, const Periods& periods,
+void find_pairs(const CellGrid& grid, Bins& own, const Store& store, const Periods& periods,
                 const PairReach& pair_reach, const ContactMemory& memory, const Kernels& kernels, ContactLists& lists);
 
 }  // namespace silt

@@ -97,17 +97,31 @@ struct NearSearch {
   int count = 0;             ///< out
 };
 
-/// The pairs of near spheres of a row of cells of a grid: of each cell with itself, with the next one along the row
-/// and with the three around it in each of the rows behind.
+/// The pairs of near spheres of a row of cells of a grid along x: of its spheres with those behind them in it, and with
+/// all in other rows. The coordinates are rounded to single precision, so that twice as many spheres fit a register;
+/// who asks adds what that may cost to the reach and takes it off the gaps.
 struct RowSearch {
-  NearSearch search;         ///< the many, the reach, and what is found: the partners
-  const int* start[5] = {};  ///< [cells + 1] where the cells begin among the many: of the row, of those behind it
-  int rows = 0;              ///< how many there are
-  int cells = 0;             ///< in a row
-  int cell = 0, last = 0;    ///< in and out: the next cell to look at, those before `last`
-  int* seeker = nullptr;     ///< out: the first of each pair
-  int room = 0;              ///< of the arrays of what is found; the search stops where it might not suffice
-  int needed = 0;            ///< out: for the cell it stopped at
+  const float* x[3] = {};         ///< m, coordinates of the many, sorted along cells; seven beyond the last may be read
+  const float* radius = nullptr;  ///< as x
+  const int* column = nullptr;    ///< which cell of its row each of the many is in
+  /// A row of cells to look at.
+  struct Row {
+    const int* start;  ///< [cells + 1] where its cells begin among the many
+    float shift[2];    ///< m, to be added to y and z of its spheres, where it is met across a periodic side
+  };
+  Row row[9];              ///< first the seekers' own
+  int rows = 0;            ///< how many there are
+  int cells = 0;           ///< in a row
+  float period = 0;        ///< m, along the row; 0: its ends do not meet. Else it has three cells at least
+  float reach = 0;         ///< m, surfaces further apart are not near
+  int* seeker = nullptr;   ///< out: the first of each pair, its number among the many
+  int* found = nullptr;    ///< out: the second
+  float* gap = nullptr;    ///< out: m, between their surfaces
+  float* radii = nullptr;  ///< m, sums of the radii of the pairs
+  int room = 0;            ///< of these; the search stops where it might not suffice
+  int next = 0, last = 0;  ///< in and out: the next seeker, those before `last`
+  int count = 0;           ///< out: pairs
+  int needed = 0;          ///< out: the least room to go on where none was found for want of it
 };
 
 /// Contacts with walls: the points the geometry gave, with history as for pairs.

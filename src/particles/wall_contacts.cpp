@@ -76,6 +76,7 @@ void WallContacts::fill(WallSweep& sweep) {
 
 void WallContacts::gather(int particles, ParticleRows& rows) const {
   rows.clear();
+  if (count() == 0) return rows.start.assign(particles + 1, 0);
   std::vector<double> entries;
   int k = 0;
   for (int p = 0; p < particles; ++p) {
@@ -94,7 +95,7 @@ void WallContacts::restore(const ParticleRows& rows) {
   const int particles = static_cast<int>(rows.start.size()) - 1;
   points_.clear();
   resize(history_, stride_, rows.start.back());
-  for (int p = 0; p < particles; ++p)
+  for (int p = 0; rows.start.back() > 0 && p < particles; ++p)
     for (int k = rows.start[p]; k < rows.start[p + 1]; ++k) {
       const double* row = rows.row(k);
       WallPoint point{};

@@ -158,6 +158,32 @@ TEST_CASE("every point of the domain is claimed by exactly one rank, ties includ
   }
 }
 
+TEST_CASE("the middle of a cell is well inside it, its corners and other cells are not", "[locator]") {
+  for (const auto& [cell, cells] : kinds) {
+    Mesh mesh(box(cell, cells));
+    const Locator locator(mesh);
+    const int corners = cell_nodes(mesh.cell);
+    std::vector<Vec3> middle(mesh.cells, Vec3::Zero()), corner(mesh.cells);
+    std::vector<int> own(mesh.cells), other(mesh.cells);
+    for (int c = 0; c < mesh.cells; ++c) {
+      const double* x = &mesh.cell_coordinates[3 * static_cast<std::size_t>(corners) * c];
+      for (int a = 0; a < corners; ++a) middle[c] += vec3(x + 3 * a) / corners;
+      corner[c] = vec3(x);
+      own[c] = c;
+      other[c] = (c + 1) % mesh.cells;
+    }
+    const auto inside = [&](const std::vector<Vec3>& points, const std::vector<int>& in) {
+      std::vector<unsigned char> is(mesh.cells);
+      locator.well_inside(points[0].data(), 3, in.data(), mesh.cells, is.data());
+      return std::count(is.begin(), is.end(), 1);
+    };
+    CHECK(inside(middle, own) == mesh.cells);
+    CHECK(inside(middle, other) == 0);
+    CHECK(inside(corner, own) == 0);
+    CHECK(inside(corner, other) == 0);
+  }
+}
+
 TEST_CASE("a point that leaves is reported with the boundary it left through", "[mpi][locator]") {
   for (const auto& [cell, cells] : kinds) {
     Mesh mesh(box(cell, cells));
@@ -327,6 +353,9 @@ TEST_CASE("points on the sides of a periodic box have one holder, from wherever 
       const int held = here.inside() ? mpi_rank() : 1 << 20;
       for (const int hint : {-1, here.cell}) {
         const Place place = locator.find(points[k], hint);
+        unsigned char well = 0;
+        locator.well_inside(points[k].data(), 3, &hint, 1, &well);
+        wrong += well && !(place.inside() && place.cell == hint && place.wrap == std::array<int, 3>{0, 0, 0});
         const int named = place.inside() ? mpi_rank() : place.state == Place::State::remote ? place.rank : -1;
         wrong += place.state == Place::State::boundary;
         std::vector<int> all(2 * static_cast<std::size_t>(mpi_size()));

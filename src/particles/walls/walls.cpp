@@ -75,6 +75,7 @@ void Walls::localise(double reach) {
 
 void Walls::list(const Motion* particles, int count, double skin, double gap) {
   gap_ = gap;
+  if (shape_.faces.empty() && shape_.edges.empty() && rigid_.empty()) return;
   double largest = 0;
   for (int i = 0; i < count; ++i) largest = std::max(largest, particles[i].radius);
   // The centres stay within a skin of this rank's cells until the list is made anew.
