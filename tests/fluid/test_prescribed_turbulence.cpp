@@ -92,6 +92,44 @@ TEST_CASE("the turbulence of a prescribed flow goes on from its saved state with
   }
 }
 
+TEST_CASE("Kato & Launder's production is mu_t S W: that of strain in pure shear, none in a flow that does not turn",
+          "[fluid][turbulence]") {
+  struct Gradient {
+    double strain, turn;  // u = (strain x + turn y, -strain y)
+  };
+  for (const std::string production : {"strain", "kato_launder"})
+    for (const bool epsilon : {true, false})
+      for (const Gradient g : {Gradient{0.6, 0}, Gradient{0, 0.8}, Gradient{0.6, 0.8}}) {  // SST: within its bound of P
+        const double k = 0.5, nu = 1e-3, ratio = 200, dt = 0.05;
+        const std::string strain = std::to_string(g.strain), turn = std::to_string(g.turn);
+        FlowCase::Settings settings = {{"mesh_cell", "quadrilateral"},
+                                       {"mesh_cells", "4, 4"},
+                                       {"mesh_upper", "1, 1, 0"},
+                                       {"fluid_type", "prescribed"},
+                                       {"fluid_density", "1"},
+                                       {"fluid_viscosity", "1e-3"},
+                                       {"fluid_velocity", strain + "*x + " + turn + "*y, -" + strain + "*y, 0"},
+                                       {"fluid_turbulence", epsilon ? "realizable_k_epsilon" : "sst_k_omega"},
+                                       {"fluid_turbulence_production", production},
+                                       {"fluid_initial_turbulent_energy", "0.5"},
+                                       {"fluid_initial_viscosity_ratio", "200"}};
+        for (const char* side : {"x_min", "x_max", "y_min", "y_max"})
+          settings.push_back({std::string("boundary_") + side + "_type", "slip"});
+        FlowCase flow(settings);
+        flow.advance(dt);
+        const double S = std::hypot(2 * g.strain, g.turn), W = g.turn;
+        const double omega = k / (ratio * nu), eps = 0.09 * k * (epsilon ? k / (ratio * nu) : omega);
+        const double A_s = std::sqrt(6.0) * std::cos(M_PI / 6);
+        const double C_mu = 1 / (4.04 + A_s * std::hypot(S, W) / std::sqrt(2.0) * k / eps);
+        const double nu_t = epsilon ? C_mu * k * k / eps : k / omega;  // no walls: F2 = 0
+        const double P = nu_t * S * (production == "strain" ? S : W);
+        // (k' - k)/dt = P - eps (2 k'/k - 1), with omega P - eps k'/k
+        const double next = epsilon ? (k / dt + P + eps) / (1 / dt + 2 * eps / k) : (k / dt + P) / (1 / dt + eps / k);
+        for (int i = 0; i < flow.mesh->nodes; ++i)
+          CHECK(flow.fluid->turbulent_energy()[i] == Approx(next).epsilon(1e-8));
+      }
+}
+
 TEST_CASE("what makes no sense with the turbulence of a prescribed flow is refused", "[fluid][turbulence]") {
   using Catch::Contains;
   const auto with = [](const std::string& name, const std::string& value) {

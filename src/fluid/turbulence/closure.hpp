@@ -10,7 +10,7 @@ struct TurbulentPoint {
   double second;              ///< epsilon (m2/s3) or omega (1/s)
   double distance;            ///< m, to the nearest wall
   double cross;               ///< grad k . grad(second)
-  double production;          ///< W/m3 of fluid, eddy viscosity times shear^2, or that of the law of the wall
+  double production;          ///< W/m3 of fluid, mu_t S^2 or mu_t S W, or that of the law of the wall
   Strain strain;
 };
 

@@ -13,6 +13,7 @@ struct TurbulenceOptions {
   double prandtl = 0.85;
   int iterations = 1;
   double largest_ratio = 1e6;
+  std::string production = "strain";
   std::string compressibility_correction = "none";
   std::string initial_energy = "0", initial_viscosity_ratio = "10";
   std::string energy_source = "0", dissipation_source = "0";
@@ -25,6 +26,9 @@ struct TurbulenceOptions {
     option("turbulence_prandtl", prandtl, "-", "turbulent Prandtl number", positive);
     option("turbulence_iterations", iterations, "-", "solutions of the two equations in a step", between(1, 100));
     option("turbulence_largest_ratio", largest_ratio, "-", "largest ratio of eddy viscosity to viscosity", positive);
+    option("turbulence_production", production, {"strain", "kato_launder"},
+           "production of k: mu_t S^2, or mu_t S W of strain rate and vorticity (Kato & Launder 1993), none where the "
+           "flow is strained without turning: in front of bodies, in shocks and behind Mach disks");
     option("compressibility_correction", compressibility_correction, DilatationDissipation::names,
            "dissipation by fluctuating compression in the k models of compressible flow, which makes mixing layers of "
            "high "

@@ -35,7 +35,8 @@ TwoEquation<Model>::TwoEquation(const Mesh& mesh, Options& options, const Turbul
       k_transport_(rule_, graph_, "fluid_turbulent_energy_"),
       second_transport_(rule_, graph_, "fluid_turbulent_dissipation_"),
       initial_(mesh, options, read, epsilon),
-      dilatation_(read.compressibility_correction) {
+      dilatation_(read.compressibility_correction),
+      turning_(read.production == "kato_launder") {
   for (auto* field : {&k_, &old_k_, &second_, &old_second_, &dissipation_, &eddy_viscosity_})
     field->assign(mesh.nodes, 0.0);
   cell_eddy_viscosity_.assign(mesh.cells, 0.0);
@@ -144,7 +145,7 @@ std::vector<TurbulentPoint> TwoEquation<Model>::points(const Flow& flow, const F
     auto& p = result[i];
     p = {flow.density[i], flow.viscosity[i], state.k[i], state.second[i], wall_distance_[i], 0, 0, f.strain[i]};
     p.cross = vec3(&gradient[6 * i]).dot(vec3(&gradient[6 * i + 3]));
-    const double shear = state.viscosity[i] * p.strain.shear * p.strain.shear;
+    const double shear = state.viscosity[i] * p.strain.shear * (turning_ ? p.strain.vorticity : p.strain.shear);
     p.production = wall_production(flow, f, p.k, static_cast<int>(i), shear);
   }
   return result;

@@ -72,6 +72,7 @@ class TwoEquation : public Turbulence {
   PositiveTransport k_transport_, second_transport_;
   InitialTurbulence initial_;
   DilatationDissipation dilatation_;
+  bool turning_;  ///< P = mu_t S W instead of mu_t S^2 (Kato & Launder 1993)
 
   std::vector<double> k_, old_k_, second_, old_second_, dissipation_, exchange_;
   State next_;
