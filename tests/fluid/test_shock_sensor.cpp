@@ -67,3 +67,32 @@ TEST_CASE("the shock sensor leaves plane shocks as they are, strong and weak", "
       CHECK(added == 0);
   }
 }
+
+TEST_CASE(
+    "no viscosity captures a layer that shears, at any angle to the mesh, and one does where the gas is compressed",
+    "[fluid][compressible]") {
+  // A stream along (1, 0.3) in gas at rest, pressure and temperature uniform: the residual of cells five of which span
+  // the layer is not zero. Then the same cells with a pressure that rises tenfold across the layer.
+  for (const bool shock : {false, true}) {
+    auto settings = gas("quadrilateral", "20, 20");
+    const std::string layer = "0.5*(1 + tanh((y - 0.35 - 0.3*x)/0.06))", speed = "0.6*" + layer;
+    const std::string pressure = shock ? "1 + 9*" + layer : "1";
+    settings.push_back({"fluid_order", "1"});
+    settings.push_back({"fluid_shock_capturing", "10"});
+    settings.push_back({"fluid_initial_velocity", speed + ", 0.3*" + speed + ", 0"});
+    settings.push_back({"fluid_initial_pressure", pressure});
+    settings.push_back({"fluid_initial_temperature", "1"});
+    set(settings, "x_min x_max y_min y_max", "type", "far_field");
+    set(settings, "x_min x_max y_min y_max", "pressure", pressure);
+    set(settings, "x_min x_max y_min y_max", "velocity", speed + ", 0.3*" + speed + ", 0");
+    set(settings, "x_min x_max y_min y_max", "temperature_value", "1");
+    FlowCase flow(settings);
+    flow.advance(1e-6);
+    const auto& viscosity = gas_of(flow).last_step().frozen.viscosity;
+    const double most = *std::max_element(viscosity.begin(), viscosity.end());
+    if (shock)
+      CHECK(most > 0.01);
+    else
+      CHECK(most == 0);
+  }
+}

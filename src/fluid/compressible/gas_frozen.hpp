@@ -144,7 +144,6 @@ double freeze_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& t
   // The residual lacks the viscous terms: what they leave in it is of the size of the gas's own viscosity.
   viscosity = std::min(std::max(viscosity - nu, 0.0), first_order);
 
-  // First-order viscosity on strong expansions (nozzle lips), where nothing else keeps the pressure positive.
   double divergence = cell.axisymmetric ? mean.u[1] / radius : 0;
   double low[2] = {1e300, 1e300}, high[2] = {0, 0};
   for (int a = 0; a < nodes; ++a) {
@@ -152,8 +151,25 @@ double freeze_cell(const GasCell<C>& cell, const GasLaw& gas, const FlowTable& t
     low[0] = std::min(low[0], cell.state[a].p), high[0] = std::max(high[0], cell.state[a].p);
     low[1] = std::min(low[1], density[a]), high[1] = std::max(high[1], density[a]);
   }
-  const double ratio = std::max((high[0] - low[0]) / (high[0] + low[0]), (high[1] - low[1]) / (high[1] + low[1]));
+  const double change[2] = {(high[0] - low[0]) / (high[0] + low[0]), (high[1] - low[1]) / (high[1] + low[1])};
+  const double ratio = std::max(change[0], change[1]);
   const auto ramp = [](double x) { return x <= 0 ? 0.0 : x >= 1 ? 1.0 : x * x * (3 - 2 * x); };
+
+  // Layers that only shear are no shocks: where pressure and density hardly change within a cell, only a compression
+  // that outweighs the vorticity is captured (C15a).
+  double vorticity2 = 0;
+  for (int i = 0; i < dim; ++i)
+    for (int l = 0; l < i; ++l) {
+      double turning = 0;
+      for (int a = 0; a < nodes; ++a) turning += g[a][l] * cell.state[a].u[i] - g[a][i] * cell.state[a].u[l];
+      vorticity2 += turning * turning;
+    }
+  const double least = 1e-3 * sound / h, compression = std::min(divergence, 0.0);
+  const double ducros = compression * compression / (divergence * divergence + vorticity2 + least * least);
+  viscosity *=
+      std::max({ramp((change[0] - 0.002) / 0.008), ramp((change[1] - 0.05) / 0.1), ramp((ducros - 0.1) / 0.4)});
+
+  // First-order viscosity on strong expansions (nozzle lips), where nothing else keeps the pressure positive.
   const double share =
       divergence > 0 ? factors.sensor * ramp((ratio - 0.4) / 0.4) : factors.shocks * ramp((ratio - 0.1) / 0.3);
   const double along = std::min(viscosity, first_order);
