@@ -146,12 +146,12 @@ TEST_CASE("Dust and gas in a closed box come to one velocity and one temperature
 }
 
 TEST_CASE(
-    "Scattered dust that passes from cell to cell disturbs the gas in proportion to its scatter, and by the square "
-    "of the cell width",
+    "Scattered dust that passes from cell to cell disturbs the gas in proportion to its scatter, by less than 1e-7",
     "[coupling][compressible][mpi]") {
   // The void fraction moves with the dust, by its filtered deposit; the gas makes room for it by its own discrete
-  // div(alpha u). The two differ by the interpolation of alpha: sound of 1e-6 of the temperature, fed anew by every
-  // cell that is passed, so it does not decay.
+  // div(alpha u). The two differ by the interpolation of alpha: sound of 4e-8 of the temperature (7e-8 on cells of
+  // half the width, which damp it less), fed anew by every cell that is passed, so it does not decay. Shock capturing
+  // in smooth sound made it 3e-6 and 5e-7.
   const Tight tight;
   const auto disturbance = [](double scatter, int cells) {
     CoupledCase run;
@@ -168,7 +168,7 @@ TEST_CASE(
     return sum;
   };
   const double whole = disturbance(1, 4), half = disturbance(0.5, 4), fine = disturbance(1, 8);
-  CHECK(whole < 5e-6);
+  CHECK(whole < 1e-7);
+  CHECK(fine < 1e-7);
   CHECK(whole / half == Approx(2).epsilon(0.1));
-  CHECK(std::log2(whole / fine) > 2);
 }
