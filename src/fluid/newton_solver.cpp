@@ -93,6 +93,13 @@ void NewtonSolver::create(SNES* snes, const char* prefix, bool direct) {
   }
   PCType type;
   SILT_PETSC(PCGetType(pc, &type));
+  if (!direct && may_keep_ && stage_ && stage_->single_precision() && std::string(type) == PCSHELL) {
+    PetscInt own;
+    SILT_PETSC(VecGetLocalSize(start_, &own));
+    SILT_PETSC(MatCreateShell(PETSC_COMM_WORLD, own, own, rows_, rows_, this, rounded_matrix_.out()));
+    SILT_PETSC(MatShellSetOperation(rounded_matrix_, MATOP_MULT, reinterpret_cast<void (*)()>(rounded_product)));
+    SILT_PETSC(SNESSetJacobian(*snes, rounded_matrix_, matrix_, jacobian, this));
+  }
   if (std::string(type) == PCLU && !solver_option_given(options + "pc_factor_mat_solver_type")) {
     SILT_PETSC(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
     // PETSc's own ordering, handed over by default, makes fronts many times larger than MUMPS's.
@@ -113,14 +120,17 @@ PetscErrorCode NewtonSolver::residual(SNES, Vec x, Vec r, void* self) {
 
 PetscErrorCode NewtonSolver::jacobian(SNES snes, Vec x, Mat, Mat matrix, void* self) {
   PetscFunctionBeginUser;
-  const auto& solver = *static_cast<NewtonSolver*>(self);
+  auto& solver = *static_cast<NewtonSolver*>(self);
   const auto& norms = solver.norms_;
   const bool first = norms.size() < 2, own = snes == solver.snes_;
   const bool close = !first && norms.back() <= kept * norms[norms.size() - 2];
   if (solver.stage_ && own) solver.stage_->keep_factors(first ? solver.factors_serve_ : close);
   // The second Jacobian is the first that is made near the solution; it also begins the next step.
   const bool stays = first ? solver.factors_serve_ && solver.jacobian_serves_ : close && norms.size() > 2;
-  if (!(solver.may_keep_ && own && stays)) PetscCall(solver.system_.jacobian(*solver.fields_, x, matrix));
+  if (!(solver.may_keep_ && own && stays)) {
+    PetscCall(solver.system_.jacobian(*solver.fields_, x, matrix));
+    solver.rounded_fits_ = own && solver.rounded_matrix_ && solver.rounded_.copy(matrix);
+  }
   if (!solver.norms_.empty() && !solver.linear_floor_given_) {
     // A linear residual well below what ends Newton's method is lost labour.
     PetscReal absolute, relative;
@@ -130,6 +140,24 @@ PetscErrorCode NewtonSolver::jacobian(SNES snes, Vec x, Mat, Mat matrix, void* s
     PetscCall(KSPSetTolerances(ksp, PETSC_DEFAULT, 0.3 * std::max(absolute, relative * solver.norms_.front()),
                                PETSC_DEFAULT, PETSC_DEFAULT));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonSolver::rounded_product(Mat shell, Vec x, Vec y) {
+  PetscFunctionBeginUser;
+  NewtonSolver* solver;
+  PetscCall(MatShellGetContext(shell, static_cast<void*>(&solver)));
+  if (!solver->rounded_fits_) {
+    PetscCall(MatMult(solver->matrix_, x, y));
+    PetscFunctionReturn(0);
+  }
+  const double* from;
+  double* to;
+  PetscCall(VecGetArrayRead(x, &from));
+  PetscCall(VecGetArrayWrite(y, &to));
+  solver->rounded_.multiply(from, to);
+  PetscCall(VecRestoreArrayWrite(y, &to));
+  PetscCall(VecRestoreArrayRead(x, &from));
   PetscFunctionReturn(0);
 }
 
@@ -163,6 +191,7 @@ void NewtonSolver::linear_answer(const StepFields& fields, Vec x, Vec b, Vec y) 
     stage_->keep_factors(false);
   }
   SILT_PETSC(system_.jacobian(fields, x, matrix_));
+  rounded_fits_ = false;
   KSP ksp;
   SILT_PETSC(SNESGetKSP(snes_, &ksp));
   SILT_PETSC(KSPSetOperators(ksp, matrix_, matrix_));

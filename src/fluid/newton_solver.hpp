@@ -50,11 +50,16 @@ class NewtonSolver {
   SNESConvergedReason run(SNES snes, Vec x, Result& result);
   static PetscErrorCode residual(SNES, Vec x, Vec r, void* self);
   static PetscErrorCode jacobian(SNES, Vec x, Mat, Mat matrix, void* self);
+  /// y = J x with rounded_, the product of GMRES inside Newton's method.
+  static PetscErrorCode rounded_product(Mat, Vec x, Vec y);
   static PetscErrorCode monitor(SNES, PetscInt iteration, PetscReal norm, void* self);
 
   const FlowSystem& system_;
   const StepFields* fields_ = nullptr;
   MatHandle matrix_;
+  MatHandle rounded_matrix_;  ///< shell of rounded_, where linear solves are inexact and the stage in single precision
+  BlockProduct rounded_;
+  bool rounded_fits_ = false;  ///< rounded_ holds what matrix_ does
   VecHandle residual_, start_;
   std::unique_ptr<PressureStage> stage_;  // before the solver that uses it
   SnesHandle snes_, direct_;

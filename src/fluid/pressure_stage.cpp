@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <sstream>
+#include <string>
+
+#include "base/solver_defaults.hpp"
 
 namespace silt {
 namespace {
@@ -12,6 +16,17 @@ namespace {
 constexpr double changed = 1.2;
 /// Largest Courant number for which the lumped inertia stands for the momentum rows.
 constexpr double largest_courant = 20;
+
+/// Whether the user gave an option that begins with `start`.
+bool any_option_given(const std::string& start) {
+  char* all;
+  SILT_PETSC(PetscOptionsGetAll(nullptr, &all));
+  std::istringstream words(all);
+  SILT_PETSC(PetscFree(all));
+  for (std::string word; words >> word;)
+    if (word.starts_with(start) && solver_option_given(word)) return true;
+  return false;
+}
 
 }  // namespace
 
@@ -44,6 +59,9 @@ void PressureStage::attach(PC pc, const char* prefix) {
   SILT_PETSC(PCSetOptionsPrefix(local_, prefix));
   SILT_PETSC(PCSetType(local_, mpi_size() > 1 ? PCASM : PCBJACOBI));  // the same on one rank, without a copy
   SILT_PETSC(PCSetFromOptions(local_));
+  const std::string options = std::string("-") + prefix;
+  single_ = mpi_size() == 1 && mesh_.cell == Cell::hexahedron && !any_option_given(options + "sub_") &&
+            !any_option_given(options + "pc_");
 }
 
 void PressureStage::prepare(const StepFields& fields) {
@@ -148,13 +166,38 @@ PetscErrorCode PressureStage::set_up(PC pc) {
   const bool keep = self.keep_ && self.factored_;
   PetscCall(PCSetReusePreconditioner(self.local_, keep ? PETSC_TRUE : PETSC_FALSE));
   if (keep) PetscFunctionReturn(0);
-  Mat operators, matrix;
-  PetscCall(PCGetOperators(pc, &operators, &matrix));
-  PetscCall(PCSetOperators(self.local_, operators, matrix));
-  PetscCall(PCSetUp(self.local_));
-  PetscCall(PCSetUpOnBlocks(self.local_));
-  if (self.active_) self.copy_parts(matrix);
+  PetscCall(self.factor(pc));
   self.factored_ = true;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PressureStage::factor(PC pc) {
+  PetscFunctionBeginUser;
+  Mat matrix;
+  PetscCall(PCGetOperators(pc, nullptr, &matrix));
+  regular_ = single_ && ilu_.factor(matrix);
+  if (!regular_) {
+    PetscCall(PCSetOperators(local_, matrix, matrix));
+    PetscCall(PCSetUp(local_));
+    PetscCall(PCSetUpOnBlocks(local_));
+  }
+  if (active_) copy_parts(matrix);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PressureStage::apply_local(Vec r, Vec x) {
+  PetscFunctionBeginUser;
+  if (!regular_) {
+    PetscCall(PCApply(local_, r, x));
+    PetscFunctionReturn(0);
+  }
+  const double* from;
+  double* to;
+  PetscCall(VecGetArrayRead(r, &from));
+  PetscCall(VecGetArrayWrite(x, &to));
+  ilu_.solve(from, to);
+  PetscCall(VecRestoreArrayWrite(x, &to));
+  PetscCall(VecRestoreArrayRead(r, &from));
   PetscFunctionReturn(0);
 }
 
@@ -226,7 +269,7 @@ PetscErrorCode PressureStage::apply(PC pc, Vec r, Vec x) {
   void* context;
   PetscCall(PCShellGetContext(pc, &context));
   auto& self = *static_cast<PressureStage*>(context);
-  PetscCall(PCApply(self.local_, r, x));
+  PetscCall(self.apply_local(r, x));
   if (!self.active_) PetscFunctionReturn(0);
   Mat matrix;
   PetscCall(PCGetOperators(pc, nullptr, &matrix));

@@ -5,6 +5,7 @@
 #include "base/nodal_matrix.hpp"
 #include "fluid/assembly/flow_system.hpp"
 #include "fluid/pressure_correction/cell_loops.hpp"
+#include "fluid/single_precision_blocks.hpp"
 
 namespace silt {
 
@@ -35,6 +36,8 @@ class PressureStage {
   /// Whether the factors of an earlier Jacobian, if there are any, serve for the next one too.
   void keep_factors(bool keep) { keep_ = keep; }
   bool factored() const { return factored_; }
+  /// Whether the local stage is an ILU(0) in single precision: on one rank, hexahedra, with no option of PETSc for it.
+  bool single_precision() const { return single_; }
 
  private:
   static PetscErrorCode set_up(PC pc);
@@ -43,6 +46,9 @@ class PressureStage {
   /// Copies what the second stage needs of the Jacobian, on one rank: its pressure rows and its pressure columns, a
   /// seventh of the numbers in half the bytes (a preconditioner needs no more digits).
   void copy_parts(Mat matrix);
+  /// Factors the Jacobian for the local stage; in double precision where single does not do.
+  PetscErrorCode factor(PC pc);
+  PetscErrorCode apply_local(Vec r, Vec x);
   /// right_ = (r - J x) of the pressure rows over the scale; -B J_up q into the velocities of correction_ with q in its
   /// pressures.
   PetscErrorCode pressure_rest(Mat matrix, Vec r, Vec x);
@@ -59,11 +65,13 @@ class PressureStage {
   MatHandle petsc_;
   KspHandle cycle_;
   Handle<PC, PCDestroy> local_;
+  BlockIlu ilu_;
   VecHandle rest_, correction_, image_, right_, answer_;
   std::vector<int> row_start_, column_;                  ///< pattern of the Jacobian's blocks, on one rank
   std::vector<float> pressure_rows_, pressure_columns_;  ///< [blocks][dim + 1], [blocks][dim]
   double rate_ = 0, scale_ = 1;
   bool active_ = false, keep_ = false, factored_ = false;
+  bool single_ = false, regular_ = false;  ///< the local stage may be ilu_; its factors exist
 };
 
 }  // namespace silt
