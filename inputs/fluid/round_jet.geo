@@ -2,7 +2,7 @@
 // distance from it. The nozzle reaches 1 D into the mesh, its wall has friction over the last 0.25 D and a lip of 0.015 D;
 // 40 D long, 15 D wide; cells of 0.003 D at the wall, growing along and outwards.
 // gmsh -2 -format msh22 inputs/fluid/round_jet.geo -o output/meshes/round_jet.msh
-If(!Exists(n)) n = 0.7; EndIf // factor of the number of cells each way
+If(!Exists(n)) n = 0.85; EndIf // factor of the number of cells each way
 X[] = {-1, -0.25, 0, 40}; Y[] = {0, 0.5, 0.515, 15};
 For j In {0:3}
   For i In {0:3}
