@@ -34,32 +34,20 @@ Physical Surface("ends") = {1, 2, 3, 4};
 Physical Volume("inside") = {1};
 """
 COARSE = PLANE.replace("Physical Surface", "Transfinite Curve {1, 3} = 3;\nTransfinite Curve {2, 4} = 9;\nTransfinite Surface {1};\nRecombine Surface {1};\nPhysical Surface")
-# An L: one arm ends where the other goes on, so the ends of the lower arm repeat each other, not those of the mesh.
-SHORT = """\
+# Two blocks, one on the other, of which the ends of the lower one repeat each other; TO is how long that is.
+LOWER = """\
 SetFactory("OpenCASCADE");
-Rectangle(1) = {0, 0, 0, 1, 1};
+Rectangle(1) = {0, 0, 0, TO, 1};
 Rectangle(2) = {0, 1, 0, 2, 1};
 BooleanFragments{ Surface{1}; Delete; }{ Surface{2}; Delete; }
 MeshSize{:} = 0.2;
 left() = Curve In BoundingBox{-0.01, -0.01, -0.01, 0.01, 1.01, 0.01};
-right() = Curve In BoundingBox{0.99, -0.01, -0.01, 1.01, 1.01, 0.01};
-Periodic Curve {right(0)} = {left(0)} Translate {1, 0, 0};
+right() = Curve In BoundingBox{TO - 0.01, -0.01, -0.01, TO + 0.01, 1.01, 0.01};
+Periodic Curve {right(0)} = {left(0)} Translate {TO, 0, 0};
 Physical Curve("sides") = Curve{:};
 Physical Surface("inside") = {1, 2};
 """
-# Only the lower half of the ends repeats.
-HALF = """\
-SetFactory("OpenCASCADE");
-Rectangle(1) = {0, 0, 0, 2, 1};
-Rectangle(2) = {0, 1, 0, 2, 1};
-BooleanFragments{ Surface{1}; Delete; }{ Surface{2}; Delete; }
-MeshSize{:} = 0.2;
-left() = Curve In BoundingBox{-0.01, -0.01, -0.01, 0.01, 1.01, 0.01};
-right() = Curve In BoundingBox{1.99, -0.01, -0.01, 2.01, 1.01, 0.01};
-Periodic Curve {right(0)} = {left(0)} Translate {2, 0, 0};
-Physical Curve("sides") = Curve{:};
-Physical Surface("inside") = {1, 2};
-"""
+SHORT, HALF = LOWER.replace("TO", "1"), LOWER.replace("TO", "2")
 # Plane Poiseuille flow between low and high, G = 10 Pa/m, mu = 1 Pa s: 1.25 m/s in the middle, 20 N on the walls.
 FLOW = """\
 mesh: {{file: {mesh}}}
