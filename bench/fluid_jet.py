@@ -167,7 +167,8 @@ def gates():
     disk = 0.5e3 * (x[steepest[0]] + x[steepest[-1] + 1])
     peak = max(front, key=lambda k: mach[k])
     verdict = lambda value, low, high: f"{low:g} to {high:g}: {'met' if low <= value <= high else 'missed'}"
-    print(f"jet 8008 mach_disk {disk:.3f} mm by the steepest rise of the pressure ({verdict(disk, 0.75, 0.85)}), {1e3 * x[peak]:.3f} mm by the largest Mach number ({verdict(1e3 * x[peak], 0.75, 0.85)})")
+    print(f"jet 8008 mach_disk {1e3 * x[peak]:.3f} mm by the largest Mach number, as rhoCentralFoam's 0.80 mm was read ({verdict(1e3 * x[peak], 0.75, 0.85)}); "
+          f"pressure rises most steeply at {disk:.3f} mm (rhoCentralFoam 0.876)")
     print(f"jet 8008 peak_mach {mach[peak]:.2f} ({verdict(mach[peak], 3.3, 3.8)})")
     for place, given in ((0.01, 244.3), (0.02, 110.9)):
         print(f"jet 8008 speed_at_{1e3 * place:g}_mm {at(place):.1f} m/s, rhoCentralFoam {given} ({verdict(at(place), 0.9 * given, 1.1 * given)})", flush=True)

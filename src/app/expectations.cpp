@@ -70,6 +70,14 @@ double steepest(const std::vector<double>& values, double spacing, double sign) 
   return most > 0 ? spacing * (0.5 * static_cast<double>(first + last) + 0.5) : unknown;
 }
 
+/// Distance from the first point, m, of the first of the largest (sign 1) or least (-1) of values `spacing` m apart.
+double place(const std::vector<double>& values, double spacing, double sign) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const auto extreme = sign > 0 ? *high : *low;
+  return *low < *high ? spacing * static_cast<double>(std::find(values.begin(), values.end(), extreme) - values.begin())
+                      : unknown;
+}
+
 Expectations::Verdict judged(const ExpectationOptions& options, double expected, double computed, double difference) {
   const double size = options.mode == "relative" ? std::abs(expected) : 1;
   double error = std::abs(difference) / size;
@@ -99,9 +107,11 @@ void ExpectationOptions::options(OptionGroup& option) {
          "how the error is taken; at_least and at_most: only what falls short or exceeds counts");
   option(
       "statistic", statistic,
-      {"last", "mean", "minimum", "maximum", "amplitude", "frequency", "rate", "steepest_rise", "steepest_fall"},
+      {"last", "mean", "minimum", "maximum", "amplitude", "frequency", "rate", "steepest_rise", "steepest_fall",
+       "place_of_maximum", "place_of_minimum"},
       "what is taken over the window (without window: of the whole run), or along a line: mean, minimum, maximum, or "
-      "the distance in m from its start where the quantity rises or falls most steeply (where a shock stands)");
+      "the distance in m from its start where the quantity rises or falls most steeply (where a shock stands) or is "
+      "largest or least");
   option("at", at, "s", "time at which the quantity is taken, interpolated between steps");
   option("window", window, "s", "from, to: stretch of time over which the statistic (default: mean) is taken");
   option("factor", factor, "-", "what the computed figure is multiplied with before it is compared");
@@ -150,8 +160,8 @@ Expectations::Expectations(Options& options, const std::vector<std::string>& thr
       throw UserError(fmt::format("-{}: one of value and values must be given", prefix));
     if (!given.values.empty() && !item.along)
       throw UserError(fmt::format("-{}_values: '{}' is one number, use value", prefix, given.quantity));
-    const bool place = given.statistic.starts_with("steepest");
-    if (!item.along && place)
+    const bool where = given.statistic.starts_with("steepest") || given.statistic.starts_with("place");
+    if (!item.along && where)
       throw UserError(fmt::format("-{}_statistic {}: '{}' is not a quantity along a line", prefix, given.statistic,
                                   given.quantity));
     if (!given.tolerance) throw UserError(fmt::format("-{}_tolerance must be given", prefix));
@@ -166,10 +176,10 @@ Expectations::Expectations(Options& options, const std::vector<std::string>& thr
       throw UserError(fmt::format("-{}: at is one moment and has no statistic; give a window", prefix));
     if (item.along && !given.statistic.empty() &&
         (!given.values.empty() ||
-         !(place || given.statistic == "mean" || given.statistic == "minimum" || given.statistic == "maximum")))
+         !(where || given.statistic == "mean" || given.statistic == "minimum" || given.statistic == "maximum")))
       throw UserError(fmt::format(
           "-{}_statistic: '{}' lies along a line; of it there are the mean, minimum and maximum, the place of "
-          "the steepest_rise and steepest_fall, and the values themselves without a statistic",
+          "the steepest_rise, steepest_fall, maximum and minimum, and the values themselves without a statistic",
           prefix, given.quantity));
     if (given.mode == "relative" && given.value && *given.value == 0)
       throw UserError(fmt::format("-{}: a relative error from 0 has no meaning, use mode: absolute", prefix));
@@ -259,11 +269,13 @@ Expectations::Verdict Expectations::verdict_along(const ExpectationOptions& opti
   const double average = options.factor * std::accumulate(values.begin(), values.end(), 0.0) / count;
   if (options.value) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    const double computed = options.statistic == "minimum"         ? options.factor * *low
-                            : options.statistic == "maximum"       ? options.factor * *high
-                            : options.statistic == "steepest_rise" ? options.factor * steepest(values, spacing, 1)
-                            : options.statistic == "steepest_fall" ? options.factor * steepest(values, spacing, -1)
-                                                                   : average;
+    const double computed = options.statistic == "minimum"            ? options.factor * *low
+                            : options.statistic == "maximum"          ? options.factor * *high
+                            : options.statistic == "steepest_rise"    ? options.factor * steepest(values, spacing, 1)
+                            : options.statistic == "steepest_fall"    ? options.factor * steepest(values, spacing, -1)
+                            : options.statistic == "place_of_maximum" ? options.factor * place(values, spacing, 1)
+                            : options.statistic == "place_of_minimum" ? options.factor * place(values, spacing, -1)
+                                                                      : average;
     return judged(options, *options.value, computed, computed - *options.value);
   }
   const double expected = std::accumulate(options.values.begin(), options.values.end(), 0.0) / options.values.size();

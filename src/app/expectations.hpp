@@ -36,7 +36,7 @@ struct ExpectationOptions {
 /// between the ends of the window); without either the last one.
 /// Along a line: the mean absolute difference from `values`, or against `value` the mean, the minimum, the maximum, or
 /// the distance in m from the first point where the quantity rises or falls most steeply (steepest_rise,
-/// steepest_fall).
+/// steepest_fall) or is largest or least (place_of_maximum, place_of_minimum; the first of equals).
 class Expectations {
  public:
   /// Reads the options; `through_time` and `along_lines` are the quantities there are. Throws UserError with the

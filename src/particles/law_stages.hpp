@@ -24,6 +24,7 @@ struct alignas(64) Block {
   double pull_off[block_size] = {};  ///< stays 0 without adhesion
   double jump[block_size] = {};      ///< stays 0 unless the normal law jumps
   double pull[block_size];           ///< N, normal force besides normal_force; cohesive laws only
+  double rest[block_size];           ///< s, of the step, after a tangential spring was read
   double noted[block_size];          ///< N, normal_force as the normal law left it; only where traced
   double force[3][block_size], torque[3][block_size];
   double dt = 0;  ///< s
@@ -126,16 +127,40 @@ void normal_stage(Block& block, const StageCall& call) {
   });
 }
 
+/// A tangential law that is a spring and dashpot with the Coulomb limit (tangential_load.hpp).
+template <class Model>
+inline constexpr bool is_spring = requires(NormalLoad<Pack> normal, typename Model::template Constants<Pack> c) {
+  Model::template law<Pack>(normal, c);
+};
+
 template <class Model, bool several>
 void tangential_stage(Block& block, const StageCall& call) {
   const Pack dt(call.dt);
-  each_pack<Model, several>(block, call, [&](int o, const auto& constants, auto& history) {
-    const Contact<Pack> contact = contact_at(block, o);
-    const NormalLoad<Pack> normal = normal_load_at(block, o);
-    Pack force[3];
-    Model::template force<Pack>(contact, normal, constants, dt, history, force);
+  const auto keep = [&](int o, const Contact<Pack>& contact, const NormalLoad<Pack>& normal, const Pack* force) {
     for (int d = 0; d < 3; ++d) store(&block.force[d][o], force[d] + normal.force * contact.normal[d]);
-  });
+  };
+  if constexpr (is_spring<Model>) {
+    each_pack<Model, several>(block, call, [&](int o, const auto& constants, auto& history) {
+      const Pack stiffness = Model::template law<Pack>(normal_load_at(block, o), constants).stiffness;
+      store(&block.rest[o], grow_spring(contact_at(block, o), stiffness, constants.least_share, dt, history.spring));
+    });
+    each_pack<Model, several>(block, call, [&](int o, const auto& constants, auto& history) {
+      const Contact<Pack> contact = contact_at(block, o);
+      const NormalLoad<Pack> normal = normal_load_at(block, o);
+      Pack force[3];
+      limit_spring(contact, normal.force, constants.friction, Model::template law<Pack>(normal, constants),
+                   load(&block.rest[o]), history.spring, force);
+      keep(o, contact, normal, force);
+    });
+  } else {
+    each_pack<Model, several>(block, call, [&](int o, const auto& constants, auto& history) {
+      const Contact<Pack> contact = contact_at(block, o);
+      const NormalLoad<Pack> normal = normal_load_at(block, o);
+      Pack force[3];
+      Model::template force<Pack>(contact, normal, constants, dt, history, force);
+      keep(o, contact, normal, force);
+    });
+  }
 }
 
 template <class Model, bool several>

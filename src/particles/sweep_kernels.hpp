@@ -24,10 +24,7 @@ SILT_INLINE void gather_pairs(const PairSweep& sweep, Block& block, int first, i
     const int *i = sweep.pairs.i + k, *j = sweep.pairs.j + k;
     if (k + block_size + lanes <= sweep.pairs.count)
       for (int q = 0; q < lanes; ++q) {
-        const Motion* ahead = &sweep.motion[j[block_size + q]];
-        __builtin_prefetch(ahead);
-        __builtin_prefetch(&sweep.rotation[j[block_size + q]]);
-        __builtin_prefetch(&sweep.load[j[block_size + q]], 1);
+        __builtin_prefetch(&sweep.motion[j[block_size + q]]);
         if (sweep.scattered) {
           __builtin_prefetch(&sweep.motion[i[block_size + q]]);
           __builtin_prefetch(&sweep.rotation[i[block_size + q]]);
@@ -65,6 +62,13 @@ SILT_INLINE void measure_pairs(PairSweep& sweep, Block& block, int first, int co
     for (int d = 0; d < 3; ++d) distance[d] = load(&block.normal[d][o]);
     const Pack radius_i = load(&block.arm_i[o]), radius_j = load(&block.arm_j[o]);
     const Pack r = sqrt(dot(distance, distance));
+    // Asked for here, where the processor waits for the divider anyway.
+    if (first + o + block_size + lanes <= sweep.pairs.count)
+      for (int q = 0; q < lanes; ++q) {
+        const int ahead = sweep.pairs.j[first + o + block_size + q];
+        __builtin_prefetch(&sweep.rotation[ahead]);
+        __builtin_prefetch(&sweep.load[ahead], 1);
+      }
     // One division serves 1/r, R_eff and m_eff.
     const Pack radii = radius_i + radius_j, inverse_masses = load(&block.effective_mass[o]);
     const Pack inverse = one / (r * radii * inverse_masses);

@@ -124,6 +124,19 @@ TEST_CASE("a shock stands where the quantity changes most steeply along the line
   CHECK_FALSE(Expectations::verdict_along(options, linear, 0.01).pass);
 }
 
+TEST_CASE("the place of the largest and of the least value along a line", "[app]") {
+  const std::vector<double> mach = {1, 1.7, 2.9, 3.6, 1.2, 0.9, 2, 1.6};
+  auto options = expected(0.75, 1e-12);  // mm: the fourth of points 0.25 mm apart
+  options.factor = 1000;
+  options.statistic = "place_of_maximum";
+  CHECK(Expectations::verdict_along(options, mach, 0.25e-3).pass);
+  options.statistic = "place_of_minimum";
+  CHECK_FALSE(Expectations::verdict_along(options, mach, 0.25e-3).pass);
+  options.value = 1.25;
+  CHECK(Expectations::verdict_along(options, mach, 0.25e-3).pass);
+  CHECK_FALSE(Expectations::verdict_along(options, {2, 2, 2}, 0.25e-3).pass);  // nowhere more than elsewhere
+}
+
 TEST_CASE("an expectation that cannot be judged is refused before the run", "[app]") {
   CHECK(refusal({{"quantity", "pressure_drop"}, {"value", "3"}, {"tolerance", "0.1"}}).empty());
   CHECK(refusal({{"quantity", "presure_drop"}, {"value", "3"}, {"tolerance", "0.1"}})
@@ -140,6 +153,11 @@ TEST_CASE("an expectation that cannot be judged is refused before the run", "[ap
   CHECK(refusal({{"quantity", "wall.velocity_x"}, {"values", "1,2"}, {"tolerance", "0.1"}}).empty());
   CHECK(refusal({{"quantity", "wall.velocity_x"}, {"value", "1"}, {"tolerance", "1"}, {"statistic", "steepest_rise"}})
             .empty());
+  CHECK(
+      refusal({{"quantity", "wall.velocity_x"}, {"value", "1"}, {"tolerance", "1"}, {"statistic", "place_of_maximum"}})
+          .empty());
+  CHECK(refusal({{"quantity", "pressure_drop"}, {"value", "1"}, {"tolerance", "1"}, {"statistic", "place_of_maximum"}})
+            .find("not a quantity along a line") != std::string::npos);
   CHECK(refusal({{"quantity", "wall.velocity_x"}, {"value", "1"}, {"tolerance", "1"}, {"statistic", "frequency"}})
             .find("lies along a line") != std::string::npos);
   CHECK(refusal({{"quantity", "pressure_drop"}, {"value", "1"}, {"tolerance", "1"}, {"statistic", "steepest_rise"}})

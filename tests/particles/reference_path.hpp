@@ -69,7 +69,14 @@ inline Loads loads_of(const ContactLaws& laws, Contact<double> contact, const Pa
     }
   }
   with_law(laws.tangential(), setup.tangential, pair, history, [&](const auto& model, const auto& c, auto& memory) {
-    std::decay_t<decltype(model)>::template force<double>(contact, result.normal, c, dt, memory, tangent);
+    using Model = std::decay_t<decltype(model)>;
+    if constexpr (requires { Model::template law<double>(result.normal, c); }) {
+      const SpringLaw<double> law = Model::template law<double>(result.normal, c);
+      const double rest = grow_spring(contact, law.stiffness, c.least_share, dt, memory.spring);
+      limit_spring(contact, result.normal.force, c.friction, law, rest, memory.spring, tangent);
+    } else {
+      Model::template force<double>(contact, result.normal, c, dt, memory, tangent);
+    }
   });
   with_law(laws.rolling(), setup.rolling, pair, history, [&](const auto& model, const auto& c, auto& memory) {
     std::decay_t<decltype(model)>::template torque<double>(contact, result.normal, c, dt, memory, torque);

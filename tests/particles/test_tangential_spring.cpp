@@ -12,6 +12,13 @@ namespace {
 constexpr double mass = 2e-6, stiffness = 50;
 const double frequency = std::sqrt(3.5 * stiffness / mass);  // rad/s
 
+/// One step of a spring without dashpot, as a sweep takes it.
+void step_spring(const Contact<double>& contact, double normal_force, double friction, double step, double* spring,
+                 double* force) {
+  const double rest = grow_spring(contact, stiffness, 0.5, step, spring);
+  limit_spring(contact, normal_force, friction, SpringLaw<double>{stiffness, 0}, rest, spring, force);
+}
+
 /// A sphere that cannot roll away, pushed aside on a wall with friction, without dashpot: the velocity of the contact
 /// point obeys dV/dt = 7/2 F/m, integrated as the engine does. Returns the energy of the oscillation after `radians`,
 /// as a share of that at the start.
@@ -26,7 +33,7 @@ double energy_left(double step, double radians) {
   double energy = 0, displacement = 0;
   for (int n = 0; n < radians / (frequency * step); ++n) {
     contact.slip[0] = velocity + step * acceleration;  // predicted for the step's end
-    limited_spring_dashpot(contact, 1.0, 1e9, stiffness, 0.0, 0.5, step, spring, force);
+    step_spring(contact, 1.0, 1e9, step, spring, force);
     const double next = 3.5 * force[0] / mass;
     velocity += 0.5 * step * (acceleration + next);
     acceleration = next;
@@ -57,17 +64,16 @@ TEST_CASE("a sliding contact carries mu F_n, and its spring is what that force n
   contact.slip[1] = 0.2;
   const double step = 1e-6, friction = 0.3, normal = 2e-3;
   double spring[3] = {}, force[3];
-  for (int n = 0; n < 200; ++n)
-    limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, 0.5, step, spring, force);
+  for (int n = 0; n < 200; ++n) step_spring(contact, normal, friction, step, spring, force);
   CHECK(force[1] == Approx(-friction * normal).epsilon(1e-12));
   CHECK(spring[1] == Approx(friction * normal / stiffness).epsilon(0.02));
   // It turns back at once: the force falls by k V dt in a step.
   contact.slip[1] = -0.2;
   double last = force[1];
-  limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, 0.5, step, spring, force);
-  limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, 0.5, step, spring, force);
+  step_spring(contact, normal, friction, step, spring, force);
+  step_spring(contact, normal, friction, step, spring, force);
   const double middle = force[1];
-  limited_spring_dashpot(contact, normal, friction, stiffness, 0.0, 0.5, step, spring, force);
+  step_spring(contact, normal, friction, step, spring, force);
   CHECK(middle > last);
   CHECK(force[1] - middle == Approx(stiffness * 0.2 * step).epsilon(1e-6));
 }

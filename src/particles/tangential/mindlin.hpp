@@ -39,10 +39,8 @@ struct Mindlin {
   };
 
   template <class Real>
-  static SILT_INLINE void force(const Contact<Real>& contact, const NormalLoad<Real>& normal, const Constants<Real>& c,
-                                Real dt, History<Real>& history, Real* force) {
-    limited_spring_dashpot(contact, normal.force, c.friction, c.stiffness * normal.contact_radius,
-                           c.damping_ratio * normal.damping, c.least_share, dt, history.spring, force);
+  static SILT_INLINE SpringLaw<Real> law(const NormalLoad<Real>& normal, const Constants<Real>& c) {
+    return {c.stiffness * normal.contact_radius, c.damping_ratio * normal.damping};
   }
 };
 

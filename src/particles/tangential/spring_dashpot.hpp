@@ -44,10 +44,8 @@ struct SpringDashpot {
   };
 
   template <class Real>
-  static SILT_INLINE void force(const Contact<Real>& contact, const NormalLoad<Real>& normal, const Constants<Real>& c,
-                                Real dt, History<Real>& history, Real* force) {
-    limited_spring_dashpot(contact, normal.force, c.friction, c.stiffness, c.damping + c.damping_ratio * normal.damping,
-                           c.least_share, dt, history.spring, force);
+  static SILT_INLINE SpringLaw<Real> law(const NormalLoad<Real>& normal, const Constants<Real>& c) {
+    return {c.stiffness, c.damping + c.damping_ratio * normal.damping};
   }
 
   /// Half a swing of a stuck contact, whose slip answers to a force as a mass of 2/7 m_eff. s

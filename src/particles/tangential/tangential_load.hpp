@@ -34,28 +34,40 @@ SILT_INLINE Real share_of_step(Real least, Real stiffness, Real mass, Real dt) {
   return share_of_step(least, Real(3.5) * stiffness * dt * dt / mass);
 }
 
-/// Spring k and dashpot gamma with the Coulomb limit (7.33): force = -(k zeta + gamma V_t), cut to mu |F_n| in length;
-/// at the limit the spring is cut back to what the limited force leaves for it, so that it starts to unload at once on
-/// reversal. `spring` is history: the tangential displacement zeta since the contact was made, in the present tangent
-/// plane, as it will be when the rest of the step (see share_of_step) has passed.
+/// Spring k and dashpot gamma of a contact, N/m and kg/s.
 template <class Real>
-SILT_INLINE void limited_spring_dashpot(const Contact<Real>& contact, Real normal_force, Real friction, Real stiffness,
-                                        Real damping, Real least_share, Real dt, Real* spring, Real* force) {
-  // Two divisions serve all: the loop over contacts waits for the divider, and for nothing else.
-  const Real zero(0.0), one(1.0), least(1e-100);
-  const Real along = dot(spring, contact.normal), square = larger(dot(spring, spring), least * least);
-  const Real inverse = one / (square * contact.effective_mass);
+struct SpringLaw {
+  Real stiffness, damping;
+};
+
+/// Spring and dashpot with the Coulomb limit (7.33), in two parts that run over many contacts each, one loop after the
+/// other: in a single loop a processor waits for one quotient after another, for it has no room for the next contacts.
+/// First part: `spring`, the tangential displacement zeta since the contact was made, in the tangent plane of the step
+/// before and as it is at that step's end, m, is turned into the present plane and grows by the slip up to where it is
+/// read. Returns what is then left of the step, s.
+template <class Real>
+SILT_INLINE Real grow_spring(const Contact<Real>& contact, Real stiffness, Real least_share, Real dt, Real* spring) {
+  const Real one(1.0), least(1e-200);
+  const Real along = dot(spring, contact.normal), square = larger(dot(spring, spring), least);
+  const Real inverse = one / (square * contact.effective_mass);  // one division serves both
   keep_length(spring, contact.normal, along, along * along * contact.effective_mass * inverse);
-  const Real turning = Real(3.5) * stiffness * dt * dt * square * inverse;
-  const Real read = dt * share_of_step(least_share, turning), rest = dt - read;
+  const Real read = dt * share_of_step(least_share, Real(3.5) * stiffness * dt * dt * square * inverse);
+  for (int d = 0; d < 3; ++d) spring[d] = spring[d] + read * contact.slip[d];
+  return dt - read;
+}
+
+/// Second part: force = -(k zeta + gamma V_t), N, cut to mu |F_n| in length; at the limit the spring is cut back to
+/// what the limited force leaves for it, so that it starts to unload at once on reversal. Then it grows by the `rest`
+/// (s) of the step.
+template <class Real>
+SILT_INLINE void limit_spring(const Contact<Real>& contact, Real normal_force, Real friction,
+                              const SpringLaw<Real>& law, Real rest, Real* spring, Real* force) {
+  const Real zero(0.0), one(1.0), least(1e-100);
   Real trial[3];
-  for (int d = 0; d < 3; ++d) {
-    spring[d] = spring[d] + read * contact.slip[d];
-    trial[d] = stiffness * spring[d] + damping * contact.slip[d];
-  }
-  const Real length = sqrt(dot(trial, trial)), stiff = larger(stiffness, least);
+  for (int d = 0; d < 3; ++d) trial[d] = law.stiffness * spring[d] + law.damping * contact.slip[d];
+  const Real length = sqrt(dot(trial, trial)), stiff = larger(law.stiffness, least);
   const Real limit = friction * larger(normal_force, zero - normal_force);
-  const Real over = one / (larger(length, least) * stiff);
+  const Real over = one / (larger(length, least) * stiff);  // here too
   const Real kept = select(length > limit, limit * stiff * over, one);
   const Real cut = select(length > limit, (length - limit) * over, zero);
   for (int d = 0; d < 3; ++d) {
