@@ -351,20 +351,25 @@ void Monolithic::find_pressure_gradient() {
   // int alpha_h grad p_h = sum_i alpha_i int N_i grad p_h, whatever the velocity element.
   const FlowTable& table = flow_table(mesh_.cell, system_.space().order);
   const int np = mesh_.nodes_per_cell;
+  const bool simplex = np == mesh_.dimension + 1;
   pressure_gradient_.assign(3 * static_cast<size_t>(mesh_.nodes), 0.0);
   for (int c = 0; c < mesh_.cells; ++c) {
     const double* x = &mesh_.cell_coordinates[3 * static_cast<size_t>(c) * np];
     const int* n = &mesh_.cell_nodes[static_cast<size_t>(c) * np];
+    Vec3 gradient = Vec3::Zero();  // times the Jacobian's determinant, the same in all of a simplex
     for (int q = 0; q < table.points; ++q) {
-      Mat3 J = Mat3::Zero();
-      Vec3 reference = Vec3::Zero();
-      for (int a = 0; a < np; ++a) {
-        J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
-        reference += pressure_[n[a]] * vec3(table.dM[q][a]);
+      if (q == 0 || !simplex) {
+        Mat3 J = Mat3::Zero();
+        Vec3 reference = Vec3::Zero();
+        for (int a = 0; a < np; ++a) {
+          J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
+          reference += pressure_[n[a]] * vec3(table.dM[q][a]);
+        }
+        if (mesh_.dimension == 2) J(2, 2) = 1;
+        gradient = J.determinant() * (J.inverse().transpose() * reference);
       }
-      if (mesh_.dimension == 2) J(2, 2) = 1;
-      const Vec3 gradient = table.weight[q] * J.determinant() * (J.inverse().transpose() * reference);
-      for (int a = 0; a < np; ++a) vec3(&pressure_gradient_[3 * static_cast<size_t>(n[a])]) += table.M[q][a] * gradient;
+      for (int a = 0; a < np; ++a)
+        vec3(&pressure_gradient_[3 * static_cast<size_t>(n[a])]) += table.weight[q] * table.M[q][a] * gradient;
     }
   }
   mesh_.sum_shared(pressure_gradient_.data(), 3);

@@ -86,6 +86,7 @@ class Monolithic final : public Fluid {
   void find_pressure_gradient();
   void remove_mean_pressure();
   FluidStep report(double dt);
+  std::vector<BoundaryFlow> boundary_flow(const std::vector<FacetIntegrals>& integrals) const;
   Turbulence::Flow turbulent_flow() const;
 
   const Mesh& mesh_;

@@ -39,7 +39,10 @@ std::vector<double> Monolithic::velocity_at(const Quadrature& rule) const {
 }
 
 std::vector<BoundaryFlow> Monolithic::boundary_flow() const {
-  const std::vector<FacetIntegrals> integrals = system_.boundary_integrals(fields_, unknown_);
+  return boundary_flow(system_.boundary_integrals(fields_, unknown_));
+}
+
+std::vector<BoundaryFlow> Monolithic::boundary_flow(const std::vector<FacetIntegrals>& integrals) const {
   const std::vector<Vec3> forces = system_.boundary_forces(fields_, unknown_);
   std::vector<BoundaryFlow> result(integrals.size());
   for (size_t b = 0; b < result.size(); ++b) {
@@ -57,7 +60,7 @@ FluidStep Monolithic::report(double dt) {
   FluidStep step;
   step.courant = courant_rate() * dt;
   const std::vector<FacetIntegrals> integrals = system_.boundary_integrals(fields_, unknown_);
-  const std::vector<BoundaryFlow> flows = boundary_flow();
+  const std::vector<BoundaryFlow> flows = boundary_flow(integrals);
   double sum = 0, inflow = 0, stored = 0, speed = 0;
   for (size_t b = 0; b < flows.size(); ++b) {
     sum += flows[b].volume_flow;
@@ -85,13 +88,18 @@ Vec3 Monolithic::total_flux() const {
   const LagrangeSpace& space = system_.space();
   const FlowTable& table = flow_table(mesh_.cell, space.order);
   const int np = mesh_.nodes_per_cell, nv = space.nodes_per_cell;
+  const bool simplex = np == mesh_.dimension + 1;
   Vec3 flux = Vec3::Zero();
   for (int c = 0; c < mesh_.cells; ++c) {
     const double* x = &mesh_.cell_coordinates[3 * static_cast<size_t>(c) * np];
+    double volume = 0;  // of the cell over that of the reference, the same in all of a simplex
     for (int q = 0; q < table.points; ++q) {
-      Mat3 J = Mat3::Zero();
-      for (int a = 0; a < np; ++a) J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
-      if (mesh_.dimension == 2) J(2, 2) = 1;
+      if (q == 0 || !simplex) {
+        Mat3 J = Mat3::Zero();
+        for (int a = 0; a < np; ++a) J += vec3(x + 3 * a) * vec3(table.dM[q][a]).transpose();
+        if (mesh_.dimension == 2) J(2, 2) = 1;
+        volume = J.determinant();
+      }
       double alpha = 0;
       Vec3 u = Vec3::Zero();
       for (int a = 0; a < nv; ++a) {
@@ -99,7 +107,7 @@ Vec3 Monolithic::total_flux() const {
         alpha += table.N[q][a] * fields_.alpha[n];
         u += table.N[q][a] * vec3(&velocity_[3 * n]);
       }
-      flux += table.weight[q] * J.determinant() * alpha * u;
+      flux += table.weight[q] * volume * alpha * u;
     }
   }
   for (int i = 0; i < 3; ++i) flux[i] = mpi_sum(flux[i]);
@@ -111,7 +119,8 @@ Vec3 Monolithic::lent_force() const {
   const FlowTable& table = flow_table(mesh_.cell, system_.space().order);
   const size_t np = mesh_.nodes_per_cell;
   Vec3 force = Vec3::Zero();
-  for (int c = 0; c < mesh_.cells; ++c) {
+  const bool lent = std::any_of(lent_share_.begin(), lent_share_.end(), [](double share) { return share != 0; });
+  for (int c = 0; lent && c < mesh_.cells; ++c) {
     const double* x = &mesh_.cell_coordinates[3 * static_cast<size_t>(c) * np];
     const int* node = &mesh_.cell_nodes[np * static_cast<size_t>(c)];
     for (int q = 0; q < table.points; ++q) {

@@ -22,6 +22,9 @@ constexpr PetscInt stage_rows = 50000;
 constexpr double loosest = 1e-2;
 /// A Jacobian stays, and factors serve for a new one, when the last iteration left at most this share of the residual.
 constexpr double kept = 2 * loosest;
+/// A step begins with the Jacobian of the last one while the first iteration leaves at most this share: to make another
+/// takes as long as ten linear iterations, which bring more than it would.
+constexpr double served = 5 * loosest;
 /// Solves after which factors are made anew, and the growth of the linear iterations that tells of too old ones.
 constexpr int longest_factor_age = 10;
 constexpr double most_growth = 1.3;
@@ -63,8 +66,7 @@ void NewtonSolver::create(SNES* snes, const char* prefix, bool direct) {
     SILT_PETSC(KSPSetPCSide(ksp, PC_RIGHT));
     SILT_PETSC(PCSetType(pc, stage_ ? PCSHELL : PCASM));
     default_solver_option(options + "sub_pc_type", "ilu");
-    const bool hexahedra = system_.space().mesh.cell == Cell::hexahedron;
-    default_solver_option(options + "sub_pc_factor_levels", hexahedra ? "0" : "1");
+    default_solver_option(options + "sub_pc_factor_levels", std::to_string(fill_levels(system_.space().mesh.cell)));
     if (stage_) stage_->attach(pc, prefix);
   } else {
     SILT_PETSC(KSPSetType(ksp, KSPFGMRES));
@@ -221,7 +223,7 @@ NewtonSolver::Result NewtonSolver::solve(const StepFields& fields, Vec x, double
     SILT_PETSC(VecCopy(start_, x));
     reason = run(snes_, x, result);
   }
-  jacobian_serves_ = !factors_serve_ || (jacobian_serves_ && norms_.size() > 1 && norms_[1] <= kept * norms_[0]);
+  jacobian_serves_ = !factors_serve_ || (jacobian_serves_ && norms_.size() > 1 && norms_[1] <= served * norms_[0]);
   if (!factors_serve_) factor_age_ = 0, fresh_linear_ = result.linear;
   ++factor_age_;
   if (result.linear > most_growth * fresh_linear_ + 3) factor_age_ = longest_factor_age;

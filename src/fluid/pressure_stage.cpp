@@ -28,7 +28,40 @@ bool any_option_given(const std::string& start) {
   return false;
 }
 
+/// [rows] r - A x of the last component of the blocks of a node, [blocks][block] their last rows.
+template <int block>
+void rest_of_last(const std::vector<int>& row_start, const int* column, const float* last_rows, const double* r,
+                  const double* x, double* rest) {
+  for (std::size_t i = 0; i + 1 < row_start.size(); ++i) {
+    double sum[block] = {}, total = 0;
+    for (int k = row_start[i]; k < row_start[i + 1]; ++k) {
+      const float* row = last_rows + static_cast<std::size_t>(k) * block;
+      const double* at = x + static_cast<std::size_t>(column[k]) * block;
+      for (int c = 0; c < block; ++c) sum[c] += static_cast<double>(row[c]) * at[c];
+    }
+    for (int c = 0; c < block; ++c) total += sum[c];
+    rest[i] = r[i * block + block - 1] - total;
+  }
+}
+
+/// [rows][block] -b_i A q in all but the last component, [blocks][block - 1] the last columns of A's blocks.
+template <int block>
+void answer_of_last(const std::vector<int>& row_start, const int* column, const float* last_columns, const double* b,
+                    const double* q, double* answer) {
+  for (std::size_t i = 0; i + 1 < row_start.size(); ++i) {
+    double sum[block - 1] = {};
+    for (int k = row_start[i]; k < row_start[i + 1]; ++k) {
+      const float* entry = last_columns + static_cast<std::size_t>(k) * (block - 1);
+      const double at = q[column[k]];
+      for (int c = 0; c + 1 < block; ++c) sum[c] += static_cast<double>(entry[c]) * at;
+    }
+    for (int c = 0; c + 1 < block; ++c) answer[i * block + c] = -b[i] * sum[c];
+  }
+}
+
 }  // namespace
+
+int fill_levels(Cell cell) { return cell == Cell::hexahedron ? 0 : 1; }
 
 PressureStage::PressureStage(const FlowSystem& system)
     : system_(system),
@@ -39,7 +72,8 @@ PressureStage::PressureStage(const FlowSystem& system)
       matrix_(graph_),
       fixed_(mesh_.nodes, 0),
       inverse_inertia_(mesh_.owned_nodes, 0.0),
-      petsc_(matrix_.create_petsc()) {
+      petsc_(matrix_.create_petsc()),
+      ilu_(fill_levels(mesh_.cell)) {
   const auto& outlet = system.boundary().pressure_boundary();
   for (int i = 0; i < mesh_.nodes; ++i) fixed_[i] = outlet[i] >= 0;
   rest_ = system.create_vector();
@@ -60,7 +94,7 @@ void PressureStage::attach(PC pc, const char* prefix) {
   SILT_PETSC(PCSetType(local_, mpi_size() > 1 ? PCASM : PCBJACOBI));  // the same on one rank, without a copy
   SILT_PETSC(PCSetFromOptions(local_));
   const std::string options = std::string("-") + prefix;
-  single_ = mpi_size() == 1 && mesh_.cell == Cell::hexahedron && !any_option_given(options + "sub_") &&
+  single_ = mpi_size() == 1 && mesh_.dimension == 3 && !any_option_given(options + "sub_") &&
             !any_option_given(options + "pc_");
 }
 
@@ -219,15 +253,8 @@ PetscErrorCode PressureStage::pressure_rest(Mat matrix, Vec r, Vec x) {
   PetscCall(VecGetArrayRead(r, &from));
   PetscCall(VecGetArrayRead(x, &state));
   PetscCall(VecGetArrayWrite(right_, &to));
-  for (int i = 0; i < owned; ++i) {
-    double sum = 0;
-    for (int k = row_start_[i]; k < row_start_[i + 1]; ++k) {
-      const float* row = &pressure_rows_[static_cast<std::size_t>(k) * block];
-      const double* at = state + static_cast<std::size_t>(column_[k]) * block;
-      for (int c = 0; c < block; ++c) sum += row[c] * at[c];
-    }
-    to[i] = fixed_[i] ? 0 : (from[i * block + last] - sum) / scale_;
-  }
+  (block == 4 ? rest_of_last<4> : rest_of_last<3>)(row_start_, column_.data(), pressure_rows_.data(), from, state, to);
+  for (int i = 0; i < owned; ++i) to[i] = fixed_[i] ? 0 : to[i] / scale_;
   PetscCall(VecRestoreArrayWrite(right_, &to));
   PetscCall(VecRestoreArrayRead(x, &state));
   PetscCall(VecRestoreArrayRead(r, &from));
@@ -244,13 +271,8 @@ PetscErrorCode PressureStage::velocity_answer(Mat matrix) {
   PetscCall(VecGetArray(correction_, &to));
   for (int i = 0; i < owned; ++i) to[i * block + last] = from[i];
   if (!row_start_.empty())
-    for (int i = 0; i < owned; ++i) {
-      double sum[3] = {};
-      for (int k = row_start_[i]; k < row_start_[i + 1]; ++k)
-        for (int c = 0; c < last; ++c)
-          sum[c] += pressure_columns_[static_cast<std::size_t>(k) * last + c] * from[column_[k]];
-      for (int c = 0; c < last; ++c) to[i * block + c] = -inverse_inertia_[i] * sum[c];
-    }
+    (block == 4 ? answer_of_last<4> : answer_of_last<3>)(row_start_, column_.data(), pressure_columns_.data(),
+                                                         inverse_inertia_.data(), from, to);
   PetscCall(VecRestoreArray(correction_, &to));
   PetscCall(VecRestoreArrayRead(answer_, &from));
   if (!row_start_.empty()) PetscFunctionReturn(0);

@@ -9,6 +9,9 @@
 
 namespace silt {
 
+/// Levels of fill of the incomplete factors: the long rows of hexahedra need none.
+int fill_levels(Cell cell);
+
 /// Preconditioner of the equal-order monolithic flow in two stages, for steps of a moderate Courant number: a local one
 /// (additive Schwarz with ILU) that smooths, then a correction of the pressure as the pressure correction makes it,
 ///   S q = r_p / scale,  u = -B J_up q,  S = int (alpha k + tau_p) grad.grad of (F6), B the inverse of the lumped
@@ -36,7 +39,7 @@ class PressureStage {
   /// Whether the factors of an earlier Jacobian, if there are any, serve for the next one too.
   void keep_factors(bool keep) { keep_ = keep; }
   bool factored() const { return factored_; }
-  /// Whether the local stage is an ILU(0) in single precision: on one rank, hexahedra, with no option of PETSc for it.
+  /// Whether the local stage is an ILU in single precision: on one rank, in space, with no option of PETSc for it.
   bool single_precision() const { return single_; }
 
  private:

@@ -119,54 +119,90 @@ void BlockProduct::multiply(const double* x, double* y) const {
   }
 }
 
-void BlockIlu::take_pattern(const int* start, const int* column, int rows) {
-  lower_start_.assign(rows + 1, 0);
-  upper_start_.assign(rows, 0);
-  upper_count_.assign(rows, 0);
+bool BlockIlu::take_pattern(Mat matrix, const int* start, const int* column, int rows) {
+  IS order, same;
+  const int* indices;
+  SILT_PETSC(MatGetOrdering(matrix, MATORDERINGRCM, &order, &same));
+  SILT_PETSC(ISGetIndices(order, &indices));
+  order_.assign(indices, indices + rows);
+  SILT_PETSC(ISRestoreIndices(order, &indices));
+  SILT_PETSC(ISDestroy(&order));
+  SILT_PETSC(ISDestroy(&same));
+  place_.resize(rows);
+  for (int i = 0; i < rows; ++i) place_[order_[i]] = i;
+
+  // Row by row as the elimination goes: a block that arises from two of levels a and b has level a + b + 1.
+  constexpr int none = std::numeric_limits<int>::max();
+  const int end = rows;  // of the list of the row's columns, which also begins there
+  std::vector<int> next(rows + 1), level(rows, none), count(rows), first(rows), right, right_level, own;
+  lower_start_.assign(1, 0);
+  lower_column_.clear();
   for (int i = 0; i < rows; ++i) {
-    const auto below = static_cast<int>(std::lower_bound(column + start[i], column + start[i + 1], i) - column);
-    lower_start_[i + 1] = lower_start_[i] + below - start[i];
-    for (int k = start[i]; k < start[i + 1]; ++k) upper_count_[i] += column[k] > i;
+    own.clear();
+    for (int k = start[order_[i]]; k < start[order_[i] + 1]; ++k) own.push_back(place_[column[k]]);
+    std::sort(own.begin(), own.end());
+    int last = end;
+    for (int k : own) {
+      level[k] = 0;
+      last = next[last] = k;
+    }
+    next[last] = end;
+    if (level[i] == none) return false;
+    for (int k = next[end]; k < i; k = next[k]) {
+      lower_column_.push_back(k);
+      int before = k;
+      for (int u = first[k]; u < first[k] + count[k]; ++u) {
+        const int j = right[u], arising = level[k] + right_level[u] + 1;
+        if (arising > levels_) continue;
+        if (level[j] == none) {
+          while (next[before] < j) before = next[before];
+          next[j] = std::exchange(next[before], j);
+        }
+        level[j] = std::min(level[j], arising);
+      }
+    }
+    lower_start_.push_back(static_cast<int>(lower_column_.size()));
+    first[i] = static_cast<int>(right.size());
+    for (int k = next[end]; k != end; k = next[k]) {
+      if (k > i) right.push_back(k), right_level.push_back(level[k]);
+      level[k] = none;
+    }
+    count[i] = static_cast<int>(right.size()) - first[i];
   }
-  int end = 0;
+  upper_count_ = std::move(count);
+  upper_start_.resize(rows);
+  upper_column_.clear();
   for (int i = rows - 1; i >= 0; --i) {
-    upper_start_[i] = end;
-    end += upper_count_[i];
-  }
-  lower_column_.resize(lower_start_[rows]);
-  upper_column_.resize(end);
-  for (int i = 0; i < rows; ++i) {
-    std::copy_n(column + start[i], lower_start_[i + 1] - lower_start_[i], lower_column_.begin() + lower_start_[i]);
-    std::copy_n(column + start[i + 1] - upper_count_[i], upper_count_[i], upper_column_.begin() + upper_start_[i]);
+    upper_start_[i] = static_cast<int>(upper_column_.size());
+    upper_column_.insert(upper_column_.end(), right.begin() + first[i], right.begin() + first[i] + upper_count_[i]);
   }
   lower_.resize(at(lower_start_[rows]));
-  upper_.resize(at(end));
+  upper_.resize(upper_column_.size() * block_size);
   inverse_.resize(at(rows));
   work_.resize(rows);
+  return true;
 }
 
 bool BlockIlu::factor(Mat matrix) {
   bool regular = true;
   with_arrays(matrix, [&](int rows, const int* start, const int* column, const double* values) {
-    if (work_.empty()) take_pattern(start, column, rows);
+    regular = !work_.empty() || take_pattern(matrix, start, column, rows);
     std::vector<int> place(rows, -1);  // of a column in the row at hand
     std::vector<Column> row;
     double largest = 0;
     for (int i = 0; i < rows && regular; ++i) {
-      const int size = start[i + 1] - start[i], below = lower_start_[i + 1] - lower_start_[i];
-      if (size != below + 1 + upper_count_[i]) {  // no diagonal block
-        regular = false;
-        break;
-      }
-      row.resize(at(size));
-      for (int k = 0; k < size; ++k) {
-        place[column[start[i] + k]] = k;
-        round_block(values + at(start[i] + k) * block_size, &row[at(k)]);
-      }
-      const double here = largest_of(values + at(start[i]) * block_size, at(size) * block_size);
+      const int below = lower_start_[i + 1] - lower_start_[i], size = below + 1 + upper_count_[i];
+      const int begin = start[order_[i]], end = start[order_[i] + 1];
+      const int *left = &lower_column_[lower_start_[i]], *right = upper_column_.data() + upper_start_[i];
+      row.assign(at(size), Column{});
+      for (int k = 0; k < below; ++k) place[left[k]] = k;
+      place[i] = below;
+      for (int k = 0; k < upper_count_[i]; ++k) place[right[k]] = below + 1 + k;
+      for (int k = begin; k < end; ++k) round_block(values + at(k) * block_size, &row[at(place[place_[column[k]]])]);
+      const double here = largest_of(values + at(begin) * block_size, at(end - begin) * block_size);
       largest = std::isfinite(here) ? std::max(largest, here) : std::numeric_limits<double>::infinity();
       for (int k = 0; k < below; ++k) {
-        const int j = column[start[i] + k];
+        const int j = left[k];
         Column* l = &lower_[at(lower_start_[i] + k)];
         for (int c = 0; c < block_size; ++c) l[c].value = times(&row[at(k)], inverse_[at(j) + c].value);
         for (int u = upper_start_[j]; u < upper_start_[j] + upper_count_[j]; ++u) {
@@ -178,7 +214,9 @@ bool BlockIlu::factor(Mat matrix) {
       regular = invert(&row[at(below)], &inverse_[at(i)]);
       std::copy(row.begin() + static_cast<std::ptrdiff_t>(at(below + 1)), row.end(),
                 upper_.begin() + static_cast<std::ptrdiff_t>(at(upper_start_[i])));
-      for (int k = start[i]; k < start[i + 1]; ++k) place[column[k]] = -1;
+      for (int k = 0; k < below; ++k) place[left[k]] = -1;
+      place[i] = -1;
+      for (int k = 0; k < upper_count_[i]; ++k) place[right[k]] = -1;
     }
     regular = regular && fits(largest);
   });
@@ -190,7 +228,7 @@ void BlockIlu::solve(const double* r, double* x) {
   // Residuals at the end of an iteration may be smaller than any number of single precision.
   const double size = largest_of(r, at(rows)), scale = size > 0 ? 1 / size : 0;
   for (int i = 0; i < rows; ++i) {
-    const double* from = r + at(i);
+    const double* from = r + at(order_[i]);
     Four sum = {static_cast<float>(scale * from[0]), static_cast<float>(scale * from[1]),
                 static_cast<float>(scale * from[2]), static_cast<float>(scale * from[3])};
     for (int k = lower_start_[i]; k < lower_start_[i + 1]; ++k)
@@ -203,7 +241,8 @@ void BlockIlu::solve(const double* r, double* x) {
       sum -= times(&upper_[at(k)], work_[upper_column_[k]].value);
     sum = times(&inverse_[at(i)], sum);
     work_[i].value = sum;
-    for (int c = 0; c < block_size; ++c) x[at(i) + c] = size * sum[c];
+    double* to = x + at(order_[i]);
+    for (int c = 0; c < block_size; ++c) to[c] = size * sum[c];
   }
 }
 

@@ -32,17 +32,26 @@ class BlockProduct {
   std::vector<single_precision::Column> values_;  ///< [blocks][4]
 };
 
-/// Incomplete factors without fill, ILU(0), in the order of the rows, as PETSc's.
+/// Incomplete factors with fill up to a level, ILU(k), the rows in the order of Cuthill and McKee reversed, as PETSc's:
+/// the numbers of a mesh file's nodes may be any, and with them the fill would grow.
 class BlockIlu {
  public:
+  /// `levels` of fill: 0 the pattern of the matrix.
+  explicit BlockIlu(int levels) : levels_(levels) {}
   /// Factors `matrix`, whose pattern stays as it was at the first call. Says whether its values fit and every pivot
   /// block could be inverted; if not, there are no factors.
   bool factor(Mat matrix);
   /// x = (L U)^-1 r, r of any size.
   void solve(const double* r, double* x);
+  /// Blocks of both factors, the diagonal ones once.
+  std::size_t blocks() const { return lower_column_.size() + upper_column_.size() + work_.size(); }
 
  private:
-  void take_pattern(const int* start, const int* column, int rows);
+  /// The factors' pattern; false where a diagonal block is missing.
+  bool take_pattern(Mat matrix, const int* start, const int* column, int rows);
+
+  int levels_;
+  std::vector<int> order_, place_;  ///< [rows] row of the matrix at a place of the factors, and the place of a row
 
   /// Blocks left of the diagonal, row by row; those right of it with the last row first, the order of their use.
   std::vector<int> lower_start_, lower_column_;  ///< [rows + 1], [blocks]
