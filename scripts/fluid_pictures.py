@@ -167,8 +167,9 @@ def main():
             continue
         output = os.path.join(ROOT, "output", "pictures", name)
         if not (arguments.keep and glob.glob(os.path.join(output, "fluid", "[0-9]*.h5"))):
-            Case(os.path.relpath(path, ROOT)).make_mesh()
-            subprocess.run([os.path.join(ROOT, "build", "silt"), path, "-output_directory", output], cwd=ROOT, stdout=subprocess.DEVNULL)
+            silt = os.path.join(ROOT, "build", "silt")
+            Case(os.path.relpath(path, ROOT)).prepare(silt)
+            subprocess.run([silt, path, "-output_directory", output], cwd=ROOT, stdout=subprocess.DEVNULL)
         try:
             picture(name, name, output)
         except (IndexError, OSError) as error:

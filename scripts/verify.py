@@ -35,8 +35,10 @@ class Case:
     Such a case is run at every level and gives a line for each column: the order between the last two levels, which
     passes when it falls short of the expected one by no more than 0.1 (or what `# slack: 0` says).
 
-    A mesh too large to be kept is made by Gmsh before the run, as the comment says:
+    A mesh too large to be kept is made by Gmsh before the run, and an earlier run that the case goes on from is run, as the
+    comments say:
       # gmsh: [options of gmsh] <file>.geo <file>.msh
+      # before: <file>.yaml [options]
     """
 
     def __init__(self, path):
@@ -59,11 +61,16 @@ class Case:
         self.ranks = int(ranks.group(1)) if ranks else None
         gmsh = re.search(r"^#\s*gmsh:(.*)$", text, re.M)
         self.gmsh = gmsh.group(1).split() if gmsh else None
+        self.before = [line.split() for line in re.findall(r"^#\s*before:(.*)$", text, re.M)]
+
+    def prepare(self, silt):
+        """Makes the mesh and the earlier runs that the case asks for; raises CalledProcessError when one fails."""
+        if self.gmsh:
+            self.make_mesh()
+        for words in self.before:
+            subprocess.run([silt, *words], cwd=ROOT, check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
 
     def make_mesh(self):
-        """Makes the mesh that the case asks for; raises when Gmsh does not."""
-        if not self.gmsh:
-            return
         *options, geometry, mesh = self.gmsh
         os.makedirs(os.path.dirname(os.path.join(ROOT, mesh)), exist_ok=True)
         subprocess.run(["gmsh", "-v", "1", *([] if "-3" in options else ["-2"]), *options, "-format", "msh22", "-o", mesh, geometry], cwd=ROOT, check=True, stdin=subprocess.DEVNULL)
@@ -120,8 +127,14 @@ def run(silt, case, ranks):
     command = [silt, case.path, "-output_directory", output]
     if ranks > 1:
         command = ["mpiexec", "-n", str(ranks)] + command
-    case.make_mesh()
     started = time.time()
+    try:
+        case.prepare(silt)
+    except (subprocess.CalledProcessError, OSError) as error:
+        print(f"  | {error}")
+        rows = [(case.name, "before", "complete", "failed", "-", "-", "FAIL")]
+        print(*rows[0], flush=True)
+        return rows
     done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     rows = [(case.name,) + match[1:] for match in FIGURE.findall(done.stdout)]
     failed = any(row[-1] == "FAIL" for row in rows)

@@ -9,6 +9,7 @@
 
 #include "app/catalogue.hpp"
 #include "base/error.hpp"
+#include "base/expression.hpp"
 #include "fluid/boundary/boundary_conditions.hpp"
 #include "particles/insertion/insertion_options.hpp"
 #include "particles/potential.hpp"
@@ -16,6 +17,12 @@
 
 namespace silt {
 namespace {
+
+/// A formula that gives no number spoils what it is used for, on some ranks or in silence: no heat, no wall.
+template <class Error>
+void refuse_bad_formulas() {
+  if (const std::string formula = Expression::check(); !formula.empty()) throw Error(formula);
+}
 
 /// Throws UserError for a condition on a boundary that the mesh has not (the sides of a periodic direction are none).
 void refuse_unknown_boundaries(const Mesh& mesh, const Options& options) {
@@ -121,6 +128,7 @@ Simulation::Simulation(Options& options, std::unique_ptr<Carried> carried)
   statistics_ = std::make_unique<ParticleStatistics>(asked, particles_.get());
   for (const auto& name : statistics_->names()) through_time.push_back(name);
   expectations_ = std::make_unique<Expectations>(options, through_time, along_lines);
+  refuse_bad_formulas<UserError>();
   progress_ = std::make_unique<Progress>(options);
   if (time_options_.least_step == 0) time_options_.least_step = 1e-3 * time_options_.step;
   options.refuse_unknown(&catalogue());
@@ -176,8 +184,10 @@ int Simulation::run() {
     try {
       step();
       report();
+      refuse_bad_formulas<RunError>();
     } catch (const RunError& error) {
-      throw RunError(error.what() + save_last_good());
+      const std::string formula = Expression::check();  // what may have come of one
+      throw RunError(error.what() + (formula.empty() ? formula : "; " + formula) + save_last_good());
     }
     if (checkpoint_->due(now_.time)) write_checkpoint("checkpoint.h5", costs());
     if (balance_->due(now_.time) && !ended() && uneven()) return share_out_anew;
@@ -216,6 +226,7 @@ void Simulation::start() {
   energy_->start(output_->directory());
   progress_->start(now_.time, time_options_.end);
   if (!restart_) report();
+  refuse_bad_formulas<RunError>();
   restart_.reset();
 }
 
@@ -263,9 +274,11 @@ void Simulation::step() {
   for (;;) {
     try {
       attempt();
+      refuse_bad_formulas<RunError>();
       substeps_since_good_ += now_.particle_step.substeps;
       return;
     } catch (const SolveFailure& failure) {
+      refuse_bad_formulas<RunError>();
       dt_ *= 0.5;
       shortened_ = dt_;
       if (dt_ < time_options_.least_step)

@@ -14,7 +14,7 @@
 namespace silt {
 namespace {
 
-constexpr const char* format_name = "silt checkpoint 1";
+constexpr const char* format_name = "silt checkpoint 2";
 
 std::uint64_t mix(std::uint64_t z) {
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;

@@ -3,12 +3,26 @@
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <cmath>
+#include <utility>
+
 #include "base/error.hpp"
+#include "base/petsc.hpp"
 
 namespace silt {
+namespace {
+
+/// What check() tells; one formula is enough.
+std::string complaint;
+int trials = 0;
+
+}  // namespace
 
 Expression::Expression(const std::string& option, const std::string& text)
-    : parser_(std::make_unique<mu::Parser>()), variables_(std::make_unique<std::array<double, 4>>()) {
+    : option_(option),
+      text_(text),
+      parser_(std::make_unique<mu::Parser>()),
+      variables_(std::make_unique<std::array<double, 4>>()) {
   try {
     const char* names[4] = {"x", "y", "z", "t"};
     for (int k = 0; k < 4; ++k) parser_->DefineVar(names[k], variables_->data() + k);
@@ -29,7 +43,30 @@ Expression& Expression::operator=(Expression&&) noexcept = default;
 
 double Expression::operator()(const Vec3& x, double t) const {
   *variables_ = {x[0], x[1], x[2], t};
-  return parser_->Eval();
+  const double value = parser_->Eval();
+  if (!std::isfinite(value)) remember(t);
+  return value;
+}
+
+void Expression::remember(double t) const {
+  if (!complaint.empty() || trials > 0) return;
+  const auto& x = *variables_;
+  complaint = uniform_ ? fmt::format("option -{}: '{}' is no finite number at t = {:g} s", option_, text_, t)
+                       : fmt::format("option -{}: '{}' is no finite number at ({:g}, {:g}, {:g}) m, t = {:g} s",
+                                     option_, text_, x[0], x[1], x[2], t);
+}
+
+Expression::Trial::Trial() { ++trials; }
+Expression::Trial::~Trial() { --trials; }
+
+std::string Expression::check() {
+  const int first = static_cast<int>(mpi_min(complaint.empty() ? mpi_size() : mpi_rank()));
+  if (first == mpi_size()) return {};
+  int length = static_cast<int>(complaint.size());
+  MPI_Bcast(&length, 1, MPI_INT, first, PETSC_COMM_WORLD);
+  complaint.resize(length);
+  MPI_Bcast(complaint.data(), length, MPI_CHAR, first, PETSC_COMM_WORLD);
+  return std::exchange(complaint, {});
 }
 
 std::array<std::string, 3> split_formulas(const std::string& option, const std::string& text) {

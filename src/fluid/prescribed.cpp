@@ -59,7 +59,7 @@ Prescribed::Prescribed(const Mesh& mesh, Options& options, const FluidOptions& f
 void Prescribed::make_turbulence(Options& options, const std::string& velocity) {
   for (const auto& boundary : mesh_.boundaries) {
     const std::string prefix = "boundary_" + boundary + "_";
-    for (const char* name : {"velocity", "mass_flow", "pressure", "rotation_rate"})
+    for (const char* name : {"velocity", "mass_flow", "profile", "pressure", "rotation_rate"})
       if (options.given(prefix + name))
         throw UserError(fmt::format(
             "-{}{} has no meaning with -fluid_type prescribed, whose velocity is -fluid_velocity", prefix, name));

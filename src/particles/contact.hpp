@@ -67,6 +67,7 @@ struct WallPoint {
   double distance;     ///< m, from the centre to the point; touching when below the radius
   double normal[3];    ///< unit vector from the wall to the centre
   double velocity[3];  ///< m/s, of the wall's material at the point
+  double shift[3];     ///< m, of the rigid wall's periodic image that is touched
 };
 
 template <class Real>

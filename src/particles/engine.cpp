@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "base/error.hpp"
@@ -45,7 +46,7 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
       gravity_(gravity),
       plane_(options_.plane || on_mesh.dimension == 2),
       memory_(laws_.history_components()),
-      wall_memory_(4 + laws_.history_components()),
+      wall_memory_(WallContacts::row_width(laws_.history_components())),
       brownian_(read<BrownianOptions>(options, "brownian")),
       fields_(make_force_fields(options, on_mesh, store.columns, options_.instructions)),
       heat_(ParticleHeat::create(options, materials, store.columns)) {
@@ -320,10 +321,11 @@ ParticleStep Engine::advance(double time, double dt) {
   if (!energy_) correct(h);
   logged.reset();
   collect_fluid();
-  // The positions of each step have been looked at; now the velocities that the last forces left.
-  double speeds = 0;
-  for (int p = 0; p < store.owned; ++p) speeds += vec3(store.motion[p].velocity).squaredNorm();
-  if (!std::isfinite(speeds)) trouble_ = find_bad();
+  // The positions of each step have been looked at; now the velocities that the last forces left, and temperatures.
+  double sum = 0;
+  for (int p = 0; p < store.owned; ++p) sum += vec3(store.motion[p].velocity).squaredNorm();
+  if (heat_) sum = std::accumulate(heat_->temperatures(store), heat_->temperatures(store) + store.owned, sum);
+  if (!std::isfinite(sum)) trouble_ = find_bad();
   stop_if_any(trouble_);
   advanced_ = !settling_;
   if (!migration_.all_at_home(store)) {

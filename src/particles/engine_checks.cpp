@@ -111,6 +111,8 @@ std::string Engine::find_bad() const {
     double sum = 0;
     for (int d = 0; d < 3; ++d) sum += motion.position[d] + motion.velocity[d] + store.rotation[p].spin[d];
     if (!std::isfinite(sum)) return "not a number: " + describe(p);
+    if (heat_ && !std::isfinite(heat_->temperatures(store)[p]))
+      return "not a number: the temperature of " + describe(p);
   }
   return "a particle's position is not a number";
 }

@@ -311,7 +311,7 @@ void wall_sweep(WallSweep& sweep) {
       Load& load = sweep.load[point.particle];
       const double force[3] = {block.force[0][o], block.force[1][o], block.force[2][o]};
       double at[3];
-      for (int d = 0; d < 3; ++d) at[d] = x[d] - block.arm_i[o] * block.normal[d][o];
+      for (int d = 0; d < 3; ++d) at[d] = x[d] - point.shift[d] - block.arm_i[o] * block.normal[d][o];
       for (int d = 0; d < 3; ++d) {
         const int e = (d + 1) % 3, f = (d + 2) % 3;
         const double couple = force[e] * block.normal[f][o] - force[f] * block.normal[e][o];

@@ -83,7 +83,8 @@ void WallContacts::gather(int particles, ParticleRows& rows) const {
     entries.clear();
     int found = 0;
     for (; k < count() && points_[k].particle == p; ++k, ++found) {
-      entries.push_back(points_[k].boundary);
+      entries.insert(entries.end(), {static_cast<double>(points_[k].boundary), static_cast<double>(points_[k].material),
+                                     points_[k].distance});
       entries.insert(entries.end(), points_[k].normal, points_[k].normal + 3);
       for (int c = 0; c < components_; ++c) entries.push_back(history(c, k));
     }
@@ -101,9 +102,11 @@ void WallContacts::restore(const ParticleRows& rows) {
       WallPoint point{};
       point.particle = p;
       point.boundary = static_cast<int>(row[0]);
-      for (int d = 0; d < 3; ++d) point.normal[d] = row[1 + d];
+      point.material = static_cast<int>(row[1]);
+      point.distance = row[2];
+      for (int d = 0; d < 3; ++d) point.normal[d] = row[3 + d];
       points_.push_back(point);
-      for (int c = 0; c < components_; ++c) history(c, k) = row[4 + c];
+      for (int c = 0; c < components_; ++c) history(c, k) = row[head + c];
     }
 }
 

@@ -16,7 +16,7 @@ class WallContacts {
 
   int count() const { return static_cast<int>(points_.size()); }
   const std::vector<WallPoint>& points() const { return points_; }
-  int row_width() const { return 4 + components_; }
+  static int row_width(int components) { return head + components; }
 
   /// Where the geometry writes the new points; adopt() then gives them their histories. Of the points further from
   /// their particle's surface than `gap` only those are kept that were nearer before: contacts that end with this step.
@@ -32,11 +32,13 @@ class WallContacts {
   double history(int component, int contact) const { return history_[component * stride_ + contact]; }
   void fill(WallSweep& sweep);
 
-  /// {boundary, normal, history} of every contact, for `particles` owned particles; and back, in their new order.
+  /// {boundary, material, distance, normal, history} of every contact, for `particles` owned particles; and back, in
+  /// their new order: all that is asked of a contact before the geometry is looked at again.
   void gather(int particles, ParticleRows& rows) const;
   void restore(const ParticleRows& rows);
 
  private:
+  static constexpr int head = 6;  ///< of a row, before the history
   void resize(Aligned<double>& values, std::size_t& stride, int count) const;
 
   int components_;

@@ -73,6 +73,8 @@ WRONG = [
     ("a fraction for a whole number", {}, options("-insertion_bed_count", "30.5"), ["-insertion_bed_count", "30.5"]),
     ("a time step of zero", {}, options("-time_step", "0"), ["-time_step"]),
     ("an end before the start", {}, options("-time_end", "-1"), ["-time_end"]),
+    ("a formula without a value", {}, options("-fluid_initial_velocity", "0, 0, sqrt(x - 0.005)"), ["-fluid_initial_velocity", "sqrt(x - 0.005)", "no finite number"]),
+    ("a mass flow that depends on the place", change('z_min: {type: velocity, velocity: "0, 0, 0.3"}', 'z_min: {type: mass_flow, mass_flow: "1e-4*x"}'), [], ["-boundary_z_min_mass_flow", "1e-4*x", "-boundary_z_min_profile"]),
     ("gravity with two numbers", {}, options("-gravity", "0,-9.81"), ["-gravity", "three numbers"]),
     ("neither yes nor no", {}, options("-output_overwrite", "perhaps"), ["-output_overwrite", "perhaps"]),
     ("an unknown precision", {}, options("-output_precision", "quad"), ["-output_precision", "double, single"]),

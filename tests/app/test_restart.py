@@ -77,6 +77,23 @@ insertion: {ball: {type: file, file: ball.csv}}
 output: {directory: out, interval: 0.01}
 progress: {quiet: yes}
 """
+# Settled, then held: what they touch of the walls is not looked at again.
+HELD = """\
+mesh: {type: box, lower: [0, 0, 0], upper: [0.012, 0.006, 0.012], cells: [4, 2, 4]}
+gravity: [0, 0, -9.81]
+time: {end: 0.2, step: 0.02}
+fluid: {type: prescribed, density: 1.2, viscosity: 1.8e-5, velocity: "0, 0, 0", temperature: "300", heat_capacity: 1005, conductivity: 0.026}
+boundary: {z_min: {material: iron, wall_temperature: "400"}}
+material:
+  bead: {density: 1000, young_modulus: 1.0e6, heat_capacity: 800, conductivity: 1}
+  iron: {density: 7800, young_modulus: 1.0e9, conductivity: 50}
+particles: {fixed: yes}
+heat: {particles: yes, conduction: yes, initial_temperature: "300"}
+insertion: {bed: {type: fill, material: bead, diameter: 1.5e-3, count: 100}}
+settle: {time: 0.1}
+output: {directory: out}
+progress: {quiet: yes}
+"""
 
 
 class Folder:
@@ -174,6 +191,8 @@ def main():
                     left = [f.column("ledger.csv", "unaccounted_z") for f in (whole, parts)]
                     far = np.abs(left[0] - left[1]).max() / np.abs(left[0]).max()
                     check(f"{label}: the ledger of the fluid is continued", far <= max(allowed, 1e-9), f"{far:.2g}")
+                deepest = [f.column("diagnostics.csv", "largest_overlap").max() for f in (whole, parts)]
+                check(f"{label}: particles that come from another rank touch walls as deep as they did", max(deepest) < 0.25, str(deepest))
                 if name == "grains":
                     averages = [f.numbers("profile_layers.csv") for f in (whole, parts)]
                     check(f"{label}: averages go on", np.allclose(*averages, rtol=1e-10 if allowed == 0 else 1e-4, atol=1e-12), f"{np.abs(averages[0] - averages[1]).max():.2g}")
@@ -226,6 +245,21 @@ def main():
                 line = [text for text in said.splitlines() if text.startswith("silt: error:")]
                 check(f"{os.path.basename(file)} {' '.join(options[:1])}, {ranks} ranks: {words}", len(line) == 1 and words in line[0] and "-restart" in line[0], said if not line else "")
                 check("nothing is written", not os.path.exists(folder.file("refused")))
+
+    with Folder(silt, HELD) as folder:
+        # A checkpoint changes nothing, nor does a restart: not what a hot wall gives to particles that are held against it.
+        for ranks in (1, 2, 3):
+            warmth = []
+            for options in ([], ["-checkpoint_interval", "0.06"], ["-time_end", "0.1", "-checkpoint_interval", "0.1"]):
+                folder.run(ranks, *options)
+                warmth.append(folder.column("diagnostics.csv", "mean_temperature_of_particles") - 300)
+            other = ranks % 3 + 1
+            folder.run(other, "-restart", "out/checkpoint.h5")
+            warmth[2] = folder.column("diagnostics.csv", "mean_temperature_of_particles") - 300
+            check(f"held particles, {ranks} ranks: warmed by their wall", 0.1 < warmth[0][-1] < 2, str(warmth[0][-1]))
+            for label, found in (("with checkpoints", warmth[1]), (f"from {ranks} to {other} ranks", warmth[2])):
+                far = np.abs(found - warmth[0]).max() / warmth[0][-1]
+                check(f"held particles, {ranks} ranks: as warm {label}", far < 1e-6, f"{far:.2g}")
 
     with Folder(silt, BALL) as folder:
         for ranks in (1, 2):

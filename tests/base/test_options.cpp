@@ -132,6 +132,22 @@ TEST_CASE("Expressions know x, y, z, t and refuse nonsense") {
   CHECK_THROWS_AS(VectorExpression("v", "0, 1"), UserError);
 }
 
+TEST_CASE("A formula that gives no number on one rank is told on all, with its place", "[mpi]") {
+  const Expression f("wall_a_heat", "sqrt(x - 1)");
+  CHECK(std::isnan(f(Vec3(0.5, 0, 0), 2)) == true);
+  CHECK_THAT(Expression::check(),
+             Catch::Contains("-wall_a_heat: 'sqrt(x - 1)'") && Catch::Contains("(0.5, 0, 0) m, t = 2 s"));
+  CHECK(Expression::check().empty());
+  if (mpi_rank() == mpi_size() - 1) f(Vec3(0.25, 0, 0), 0);
+  CHECK_THAT(Expression::check(), Catch::Contains("(0.25, 0, 0)"));
+  {
+    const Expression::Trial trial;
+    f(Vec3::Zero(), 0);
+  }
+  f(Vec3(2, 0, 0), 0);
+  CHECK(Expression::check().empty());
+}
+
 TEST_CASE("An options file may build on another one, which it overrides") {
   const ScratchFolder scratch;
   std::ofstream("options_base.yaml") << "sample: {density: 1, count: 5}\n";

@@ -55,6 +55,10 @@ TEST_CASE("A boundary without a condition or with one that does not fit is refus
              Contains("boundary_x_min_velocity is missing"));
   CHECK_THAT(message(all_walls_but("x_min", {{"boundary_x_min_type", "mass_flow"}})),
              Contains("boundary_x_min_mass_flow is missing"));
+  CHECK_THAT(message(all_walls_but("x_min", {{"boundary_x_min_type", "mass_flow"}, {"boundary_x_min_mass_flow", "y"}})),
+             Contains("boundary_x_min_mass_flow: 'y' depends on the place") && Contains("-boundary_x_min_profile"));
+  CHECK_THAT(message(all_walls_but("x_min", {{"boundary_x_min_type", "slip"}, {"boundary_x_min_profile", "y"}})),
+             Contains("boundary_x_min_profile has no meaning"));
   CHECK_THAT(message(all_walls_but("x_min", {{"boundary_x_min_type", "slip"}, {"boundary_x_min_pressure", "1"}})),
              Contains("no meaning"));
   CHECK_THAT(message(all_walls_but("x_min", {{"boundary_x_min_type", "outflow"}})), Contains("pressure"));
@@ -113,6 +117,32 @@ TEST_CASE("A mass flow comes in uniformly and to the last gram", "[fluid][mpi]")
   double fastest = 0;
   for (double u : c.boundaries->velocity()) fastest = std::max(fastest, std::abs(u));
   CHECK(mpi_max(fastest) == Approx(1.5));
+}
+
+TEST_CASE("A mass flow is spread as its profile says, whatever the profile's size", "[fluid][mpi]") {
+  for (const std::string size : {"1", "7000*t"}) {
+    Conditions c(all_walls_but("x_min x_max", {{"boundary_x_min_type", "mass_flow"},
+                                               {"boundary_x_min_mass_flow", "6*t"},
+                                               {"boundary_x_min_profile", size + "*y*(1 - y)*z*(1 - z)"},
+                                               {"boundary_x_max_type", "pressure"}}));
+    // U = 1.5*36 y (1 - y) z (1 - z), of fourth degree: exact but for the rule of the facets.
+    CHECK(c.boundaries->boundary_flow()[0] == Approx(-1.5).epsilon(1e-12));
+    double wrong = 0, fastest = 0;
+    for (int i = 0; i < c.mesh->nodes; ++i) {
+      const Vec3 x = vec3(&c.mesh->node_coordinates[3 * i]), u = vec3(&c.boundaries->velocity()[3 * i]);
+      if (x.x() > 1e-9) continue;
+      const double expected = 54 * x.y() * (1 - x.y()) * x.z() * (1 - x.z());
+      wrong = std::max(wrong, (u - Vec3(expected, 0, 0)).norm());
+      fastest = std::max(fastest, expected);
+    }
+    CHECK(mpi_max(fastest) == Approx(54.0 * 4 / 81));
+    CHECK(mpi_max(wrong) < 1e-10);
+  }
+  CHECK_THROWS_WITH(Conditions(all_walls_but("x_min x_max", {{"boundary_x_min_type", "mass_flow"},
+                                                             {"boundary_x_min_mass_flow", "1"},
+                                                             {"boundary_x_min_profile", "y - 0.5"},
+                                                             {"boundary_x_max_type", "pressure"}})),
+                    Catch::Contains("-boundary_x_min_profile: its integral over the boundary is not above 0"));
 }
 
 TEST_CASE("A uniform flow through open sides stays uniform", "[fluid]") {

@@ -45,34 +45,45 @@ TEST_CASE("Couette flow with heating leaves through an open boundary as it is", 
   }
 }
 
-TEST_CASE("Poiseuille flow leaves an open pipe as it is", "[fluid][compressible]") {
-  // Gravity drives it at uniform pressure: u = g rho (1 - r^2)/(4 mu), slow enough to heat nothing.
-  auto settings = gas("quadrilateral", "8, 16");
-  settings[5].second = "0.5";
-  const std::string u = "0.05*(1 - y^2)";
-  settings.push_back({"fluid_symmetry", "axisymmetric"});
-  set(settings, "y_min", "type", "slip");
-  set(settings, "y_max", "type", "no_slip");
-  set(settings, "y_max", "temperature_type", "given");
-  set(settings, "x_min", "type", "far_field");
-  set(settings, "x_min", "velocity", u + ", 0, 0");
-  set(settings, "x_max", "type", "pressure");
-  set(settings, "x_min x_max", "pressure", "1");
-  set(settings, "x_min x_max y_max", "temperature_value", "1");
-  settings.push_back({"fluid_march", "steady"});
-  settings.push_back({"fluid_order", "1"});
-  settings.push_back({"fluid_initial_velocity", u + ", 0, 0"});
-  settings.push_back({"fluid_initial_pressure", "1"});
-  settings.push_back({"fluid_initial_temperature", "1"});
-  FlowCase flow(settings, Vec3(0.1, 0, 0));
-  for (int k = 0; k < 20; ++k) flow.advance(0.1 * std::pow(1.5, k));
-  for (const double x : {0.5, 0.875, 1.0})
-    for (const double y : {0.0, 0.25, 0.5, 0.75})
-      CHECK(flow.value(flow.fluid->velocity(), 3, 0, Vec3(x, y, 0)) == Approx(0.05 * (1 - y * y)).epsilon(0.01));
-  // Weight and friction balance: what is lost on the wall came in along the pipe.
-  double force = 0;
-  for (const auto& f : flow.fluid->boundary_flow()) force += f.force.x();
-  CHECK(force == Approx(0.1 * M_PI).epsilon(1e-3));
+TEST_CASE("Poiseuille flow leaves an open pipe as it is, come as a velocity or as a mass flow with its profile",
+          "[fluid][compressible]") {
+  for (const std::string inlet : {"far_field", "mass_flow"}) {
+    // Gravity drives it at uniform pressure: u = g rho (1 - r^2)/(4 mu), slow enough to heat nothing.
+    auto settings = gas("quadrilateral", "8, 16");
+    settings[5].second = "0.5";
+    const std::string u = "0.05*(1 - y^2)";
+    settings.push_back({"fluid_symmetry", "axisymmetric"});
+    set(settings, "y_min", "type", "slip");
+    set(settings, "y_max", "type", "no_slip");
+    set(settings, "y_max", "temperature_type", "given");
+    set(settings, "x_min", "type", inlet);
+    if (inlet == "far_field") {
+      set(settings, "x_min", "velocity", u + ", 0, 0");
+      set(settings, "x_min", "pressure", "1");
+    } else {  // the flow through the whole circumference
+      set(settings, "x_min", "mass_flow", "0.05*pi/2");
+      set(settings, "x_min", "profile", "3 - 3*y^2");
+    }
+    set(settings, "x_max", "type", "pressure");
+    set(settings, "x_max", "pressure", "1");
+    set(settings, "x_min x_max y_max", "temperature_value", "1");
+    settings.push_back({"fluid_march", "steady"});
+    settings.push_back({"fluid_order", "1"});
+    settings.push_back({"fluid_initial_velocity", u + ", 0, 0"});
+    settings.push_back({"fluid_initial_pressure", "1"});
+    settings.push_back({"fluid_initial_temperature", "1"});
+    FlowCase flow(settings, Vec3(0.1, 0, 0));
+    for (int k = 0; k < 20; ++k) flow.advance(0.1 * std::pow(1.5, k));
+    for (const double x : {0.5, 0.875, 1.0})
+      for (const double y : {0.0, 0.25, 0.5, 0.75})
+        CHECK(flow.value(flow.fluid->velocity(), 3, 0, Vec3(x, y, 0)) == Approx(0.05 * (1 - y * y)).epsilon(0.01));
+    CHECK(flow.fluid->boundary_flow()[0].mass_flow ==
+          Approx(-0.05 * M_PI / 2).epsilon(inlet == "far_field" ? 0.01 : 1e-9));
+    // Weight and friction balance: what is lost on the wall came in along the pipe.
+    double force = 0;
+    for (const auto& f : flow.fluid->boundary_flow()) force += f.force.x();
+    CHECK(force == Approx(0.1 * M_PI).epsilon(1e-3));
+  }
 }
 
 TEST_CASE("a jet that starts at once, or whose pressure rises at once, is found in every step, and no mass is lost",

@@ -161,6 +161,39 @@ TEST_CASE("A drum of STL facets turns a ball as the analytic drum does", "[walls
   CHECK(apart(analytic, stl) < 0.02 * std::abs(analytic.x[0]));
 }
 
+TEST_CASE("A wall turns about the axis of its image where it is touched across a periodic side", "[walls][mpi]") {
+  // Two balls roll on a turning roller, opposite each other: in the middle of the box, and on its periodic sides.
+  std::vector<State> ball[2];
+  Vec3 torque[2] = {Vec3::Zero(), Vec3::Zero()};
+  for (int k = 0; k < 2; ++k) {
+    const double x = k ? -0.1 : 0;
+    BoxCase setup = ball_case({{"wall_a_type", "cylinder"},
+                               {"wall_a_side", "outside"},
+                               {"wall_a_point", k ? "-0.1, 0, 0" : "0, 0, 0"},
+                               {"wall_a_axis", "0, 1, 0"},
+                               {"wall_a_radius", "0.02"},
+                               {"wall_a_rotation_axis", "0, 1, 0"},
+                               {"wall_a_rotation_rate", "20"}});
+    setup.gravity.setZero();
+    setup.mesh.periodic = {1, 0, 0};
+    BoxRun box(setup);
+    box.particles.add({sphere(Vec3(x + 0.0252037, 0, 0), Vec3(-0.2, 0, 0), 0.005),
+                       sphere(Vec3(k ? 0.1 - 0.0252037 : -0.0252037, 0, 0), Vec3(0.2, 0, 0), 0.005)});
+    for (int step = 0; step < 4; ++step) {
+      box.particles.advance(0.0005 * step, 0.0005);
+      torque[k] += box.particles.wall_loads().back().torque;
+    }
+    for (const auto& [id, state] : gather(box.particles)) ball[k].push_back(state);
+  }
+  CHECK(std::abs(torque[0][1]) > 1e-4);
+  CHECK((torque[1] - torque[0]).norm() < 1e-6 * torque[0].norm());
+  for (int i = 0; i < 2; ++i) {
+    CHECK(std::abs(ball[0][i].v[2]) > 0.05);
+    CHECK((vec3(ball[1][i].v) - vec3(ball[0][i].v)).norm() < 1e-9);
+    CHECK((vec3(ball[1][i].w) - vec3(ball[0][i].w)).norm() < 1e-6);
+  }
+}
+
 TEST_CASE("A servo wall presses with its force, an oscillating one is where its sine says", "[walls][mpi]") {
   BoxCase setup = ball_case({{"wall_lid_type", "plane"},
                              {"wall_lid_point", "0, 0, 0.02"},
@@ -339,6 +372,10 @@ TEST_CASE("A wall with too few or too many options is refused by name", "[walls]
   CHECK_THAT(refused(with({{"wall_a_material", "stel"}})), Contains("did you mean steel"));
   CHECK_THAT(refused(with({{"wall_a_servo_force", "1"}})), Contains("servo needs all of"));
   CHECK_THAT(refused(with({{"wall_a_rotation_rate", "1"}})), Contains("-wall_a_rotation_axis is missing"));
+  CHECK_THAT(refused(with({{"wall_a_velocity", "x, 0, 0"}})),
+             Contains("-wall_a_velocity: 'x, 0, 0' depends on the place"));
+  CHECK_THAT(refused(with({{"wall_a_rotation_rate", "1 + y"}, {"wall_a_rotation_axis", "0, 0, 1"}})),
+             Contains("-wall_a_rotation_rate: '1 + y' depends on the place"));
   CHECK_THAT(refused({{"wall_x_min_type", "plane"}, {"wall_x_min_point", "0, 0, 0"}, {"wall_x_min_normal", "0, 0, 1"}}),
              Contains("is a boundary of the mesh"));
   CHECK_THAT(refused({{"wall_a_type", "stl"}, {"wall_a_file", "nowhere.stl"}}), Contains("does not exist"));

@@ -26,7 +26,10 @@ void BoundaryOptions::options(OptionGroup& option) {
          "m/s; type velocity: superficial velocity (void fraction times velocity) as formulas in x, y, z, t; type "
          "no_slip: velocity of the wall; far_field, supersonic_inflow: velocity outside");
   rotation.options(option);
-  option("mass_flow", mass_flow, "kg/s into the domain (per metre of depth in 2D), a formula in t; uniform and normal");
+  option("mass_flow", mass_flow, "kg/s into the domain (per metre of depth in 2D), a formula in t; normal");
+  option("profile", profile,
+         "type mass_flow: how the flow is spread over the boundary, a formula in x, y, z, t of which only the shape "
+         "counts: y*(1 - y) for a parabola");
   option(
       "pressure", pressure,
       "Pa, formula in x, y, z, t: static pressure (pressure), stagnation pressure (total_pressure), pressure outside "
@@ -35,13 +38,19 @@ void BoundaryOptions::options(OptionGroup& option) {
   option.group("turbulence", turbulence);
 }
 
-BoundaryConditions::BoundaryConditions(const Mesh& mesh, Options& options, double density, bool compressible)
-    : mesh_(mesh), compressible_(compressible), density_(density), facets_(facet_rules(mesh)) {
+BoundaryConditions::BoundaryConditions(const Mesh& mesh, Options& options, double density, bool compressible,
+                                       bool axisymmetric)
+    : mesh_(mesh),
+      compressible_(compressible),
+      axisymmetric_(axisymmetric),
+      density_(density),
+      facets_(facet_rules(mesh)) {
   read(options);
   areas_.assign(mesh.boundaries.size(), 0);
   for (const auto& facet : facets_)
     for (int q = 0; q < facet.points; q++) areas_[facet.boundary] += facet.point[q].area.norm();
   for (auto& area : areas_) area = mpi_sum(area);
+  spread_.assign(mesh.boundaries.size(), 0);
   refuse_moving_through();
   find_nodes();
   velocity_.assign(3 * mesh.nodes, 0);
@@ -89,6 +98,7 @@ void BoundaryConditions::read(Options& options) {
     for (const char* property : {"rotation_axis", "rotation_centre"})
       check(property, condition.type == no_slip && options.given(prefix + "_rotation_rate"), false);
     check("mass_flow", condition.type == mass_flow, condition.type == mass_flow);
+    check("profile", condition.type == mass_flow, false);
     check("pressure",
           condition.type == pressure || condition.type == total_pressure || outside ||
               (compressible_ && condition.type == velocity),
@@ -98,6 +108,12 @@ void BoundaryConditions::read(Options& options) {
     condition.velocity =
         std::make_unique<VectorExpression>(prefix + "_velocity", given.rotation.formula(prefix, given.velocity));
     condition.mass_flow = std::make_unique<Expression>(prefix + "_mass_flow", given.mass_flow);
+    if (!condition.mass_flow->uniform())
+      throw UserError(
+          fmt::format("option -{0}_mass_flow: '{1}' depends on the place; it is one number for the whole "
+                      "boundary, -{0}_profile says how it is spread",
+                      prefix, given.mass_flow));
+    condition.profile = std::make_unique<Expression>(prefix + "_profile", given.profile);
     condition.pressure = std::make_unique<Expression>(prefix + "_pressure", given.pressure);
     condition.has_pressure = condition.type == velocity && options.given(prefix + "_pressure");
     closed_ = closed_ && condition.type < pressure;
@@ -113,6 +129,7 @@ void BoundaryConditions::read(Options& options) {
 void BoundaryConditions::refuse_moving_through() const {
   for (std::size_t b = 0; b < conditions_.size(); b++) {
     if (!conditions_[b].moving) continue;
+    const Expression::Trial trial;
     for (double time : {0.0, 1.0}) {  // a wall may start from rest
       double through = 0, along = 0;
       for (const auto& facet : facets_) {
@@ -199,11 +216,35 @@ void BoundaryConditions::find_constraints(const std::vector<double>& slip_normal
   }
 }
 
+void BoundaryConditions::spread_mass_flows(double time) {
+  for (std::size_t b = 0; b < conditions_.size(); b++) {
+    const auto& condition = conditions_[b];
+    if (condition.type != BoundaryType::mass_flow) continue;
+    double integral = 0, magnitude = 0;
+    for (const auto& facet : facets_) {
+      if (facet.boundary != static_cast<int>(b)) continue;
+      for (int q = 0; q < facet.points; q++) {
+        const Vec3& x = facet.point[q].x;
+        const double share =
+            (*condition.profile)(x, time) * facet.point[q].area.norm() * (axisymmetric_ ? 2 * M_PI * x.y() : 1.0);
+        integral += share, magnitude += std::abs(share);
+      }
+    }
+    integral = mpi_sum(integral), magnitude = mpi_sum(magnitude);
+    if (!(integral > 1e-6 * magnitude))
+      throw RunError(
+          fmt::format("option -boundary_{}_profile: its integral over the boundary is not above 0 at t = {:g} s",
+                      mesh_.boundaries[b], time));
+    spread_[b] = (*condition.mass_flow)(Vec3::Zero(), time) / integral;
+  }
+}
+
+double BoundaryConditions::mass_flux(int b, const Vec3& x, double time) const {
+  return spread_[b] * (*conditions_[b].profile)(x, time);
+}
+
 void BoundaryConditions::evaluate(double time, const double* void_fraction) {
-  std::vector<double> normal_speed(conditions_.size(), 0);
-  for (std::size_t b = 0; b < conditions_.size(); b++)
-    if (conditions_[b].type == BoundaryType::mass_flow && !compressible_)
-      normal_speed[b] = -(*conditions_[b].mass_flow)(Vec3::Zero(), time) / (density_ * areas_[b]);
+  spread_mass_flows(time);
   for (const auto& constraint : constraints_) {
     const int i = constraint.node, b = velocity_boundary_[i];
     const auto& condition = conditions_[b];
@@ -212,7 +253,7 @@ void BoundaryConditions::evaluate(double time, const double* void_fraction) {
     if (condition.type == BoundaryType::velocity)
       value = (*condition.velocity)(vec3(&mesh_.node_coordinates[3 * i]), time) / alpha;
     else if (condition.type == BoundaryType::mass_flow)
-      value = vec3(&normal_[3 * i]) * (normal_speed[b] / alpha);
+      value = vec3(&normal_[3 * i]) * (-mass_flux(b, vec3(&mesh_.node_coordinates[3 * i]), time) / (density_ * alpha));
     else if (condition.moving)
       value = (*condition.velocity)(vec3(&mesh_.node_coordinates[3 * i]), time);
     if (mesh_.dimension == 2) value.z() = 0;
@@ -229,7 +270,7 @@ Vec3 BoundaryConditions::prescribed(int b, const Vec3& x, const Vec3& normal, do
   if (condition.type == BoundaryType::velocity)
     value = (*condition.velocity)(x, time) / void_fraction;
   else if (condition.type == BoundaryType::mass_flow)
-    value = normal * (-(*condition.mass_flow)(Vec3::Zero(), time) / (density_ * areas_[b] * void_fraction));
+    value = normal * (-mass_flux(b, x, time) / (density_ * void_fraction));
   else if (condition.moving)
     value = (*condition.velocity)(x, time);
   if (mesh_.dimension == 2) value.z() = 0;
@@ -247,13 +288,12 @@ void BoundaryConditions::add_flow(double time) {
   if (!flows) return;
   for (const auto& facet : facets_) {
     const auto& condition = conditions_[facet.boundary];
-    const bool given = condition.type == BoundaryType::velocity, uniform = condition.type == BoundaryType::mass_flow;
-    if (!given && !uniform) continue;
-    const double speed =
-        uniform ? -(*condition.mass_flow)(Vec3::Zero(), time) / (density_ * areas_[facet.boundary]) : 0.0;
+    const bool by_mass = condition.type == BoundaryType::mass_flow;
+    if (condition.type != BoundaryType::velocity && !by_mass) continue;
     for (int q = 0; q < facet.points; q++) {
       const auto& point = facet.point[q];
-      const double out = uniform ? speed * point.area.norm() : (*condition.velocity)(point.x, time).dot(point.area);
+      const double out = by_mass ? -mass_flux(facet.boundary, point.x, time) / density_ * point.area.norm()
+                                 : (*condition.velocity)(point.x, time).dot(point.area);
       boundary_flow_[facet.boundary] += out;
       throughput_ += std::abs(out);
       for (int a = 0; a < facet.nodes; a++) flow_[facet.node[a]] += point.shape[a] * out;

@@ -34,6 +34,7 @@ struct BoundaryOptions {
   std::string type;
   std::string velocity = "0, 0, 0";
   std::string mass_flow = "0";
+  std::string profile = "1";
   std::string pressure = "0";
   SurfaceMotion rotation;
   TemperatureOptions temperature;
@@ -58,7 +59,9 @@ class BoundaryConditions {
   /// parameters that do not fit its type. Collective.
   /// Compressible flow has boundaries of its own (total_pressure, far_field, supersonic_...), its mass_flow leaves the
   /// velocity free, and `density` is not used.
-  BoundaryConditions(const Mesh& mesh, Options& options, double density, bool compressible = false);
+  /// `axisymmetric`: around the x axis, so that a boundary's mass flow is that of the whole circumference.
+  BoundaryConditions(const Mesh& mesh, Options& options, double density, bool compressible = false,
+                     bool axisymmetric = false);
 
   BoundaryType type(int boundary) const { return conditions_[boundary].type; }
   /// True when the velocity is free on a boundary of this type: what stands outside enters through the flux alone.
@@ -70,7 +73,8 @@ class BoundaryConditions {
   /// What the user gave for a boundary, at a point.
   double given_pressure(int b, const Vec3& x, double t) const { return (*conditions_[b].pressure)(x, t); }
   Vec3 given_velocity(int b, const Vec3& x, double t) const { return (*conditions_[b].velocity)(x, t); }
-  double given_mass_flow(int b, double t) const { return (*conditions_[b].mass_flow)(Vec3::Zero(), t); }
+  /// kg/(m2 s) into the domain at a point of a mass_flow boundary, at the time of the last evaluate().
+  double mass_flux(int b, const Vec3& x, double time) const;
   /// True when no boundary fixes the pressure: it is then determined up to a constant.
   bool closed() const { return closed_; }
   const std::vector<FacetRule>& facets() const { return facets_; }
@@ -125,21 +129,24 @@ class BoundaryConditions {
     BoundaryType type = BoundaryType::no_slip;
     bool moving = false, has_pressure = false;
     std::unique_ptr<VectorExpression> velocity;
-    std::unique_ptr<Expression> mass_flow, pressure;
+    std::unique_ptr<Expression> mass_flow, profile, pressure;
   };
   void read(Options& options);
   void find_nodes();
   void find_constraints(const std::vector<double>& slip_normals);
+  /// Finds what the profiles of mass_flow boundaries are multiplied with at a time.
+  void spread_mass_flows(double time);
   void add_flow(double time);
   /// A wall that moved through its own surface would need a mesh that moves: refused.
   void refuse_moving_through() const;
 
   const Mesh& mesh_;
-  bool compressible_ = false;
+  bool compressible_ = false, axisymmetric_ = false;
   double density_;
   std::vector<Condition> conditions_;
   std::vector<FacetRule> facets_;
   std::vector<double> areas_;
+  std::vector<double> spread_;  ///< kg/(m2 s) over the profile of each mass_flow boundary
   bool closed_ = true;
   std::vector<Constraint> constraints_;
   std::vector<int> velocity_boundary_, pressure_boundary_;

@@ -65,7 +65,7 @@ Compressible::Compressible(const Mesh& mesh, Options& options, const FluidOption
         return read;
       }()),
       order_(fluid.order),
-      boundaries_(mesh, options, 1, true),
+      boundaries_(mesh, options, 1, true, options_.symmetry == "axisymmetric"),
       thermal_(mesh, options, boundaries_),
       system_(mesh, boundaries_, thermal_),
       newton_(system_),
@@ -208,7 +208,7 @@ void Compressible::set_outside(double time, double dt) {
       }
       o.has_temperature = thermal_[b].has_value;
       if (o.has_temperature) o.T = (*thermal_[b].value)(x, time) / T0_;
-      if (type == mass_flow) o.inflow = boundaries_.given_mass_flow(b, time) / system_.area(b) / (p0_ / u0_);
+      if (type == mass_flow) o.inflow = boundaries_.mass_flux(b, x, time) / (p0_ / u0_);
       if (!(o.p > 0) || !(o.T > 0))
         throw RunError(fmt::format("boundary {}: pressure and temperature must be above 0 at t = {:g} s",
                                    mesh_.boundaries[b], time));

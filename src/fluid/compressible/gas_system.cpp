@@ -58,11 +58,6 @@ void GasSystem::set_axisymmetric(bool axisymmetric) {
     }
   }
   mesh_.sum_shared(weights_.data(), 1);
-  areas_.assign(mesh_.boundaries.size(), 0.0);
-  for (const FacetRule& facet : boundary_.facets())
-    for (int q = 0; q < facet.points; ++q)
-      areas_[facet.boundary] += facet.point[q].area.norm() * (axisymmetric ? 2 * M_PI * facet.point[q].x.y() : 1.0);
-  for (double& area : areas_) area = mpi_sum(area);
 }
 
 void GasSystem::impose(const GasStep& step, std::vector<double>& state) const {

@@ -48,8 +48,6 @@ class GasSystem {
   int size() const { return dimension_ + 2; }
   /// Sets what the step's conditions prescribe in a state.
   void impose(const GasStep& step, std::vector<double>& state) const;
-  /// m2, a boundary's area, over the whole circumference where axisymmetric.
-  double area(int boundary) const { return areas_[boundary]; }
   VecHandle create_vector() const;
   MatHandle create_matrix() const;
   /// Unknowns [nodes][size], Cartesian <-> global vector.
@@ -98,7 +96,6 @@ class GasSystem {
   VelocityConstraints constraints_;
   const std::vector<char>& fixed_temperature_;
   std::vector<int> temperature_boundary_;  ///< [nodes] where heat is given: temperature, flux or transfer; -1: nowhere
-  std::vector<double> areas_;
   int dimension_;
   GasLoop loop_;
   bool axisymmetric_ = false;

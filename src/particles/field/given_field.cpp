@@ -12,6 +12,7 @@ FieldRange GivenField::range(const Vec3& lower, const Vec3& upper) const {
     const Vec3 share = Vec3(k % n, k / n % n, k / (n * n)) / (n - 1);
     return Vec3(lower + share.cwiseProduct(upper - lower));
   };
+  const Expression::Trial trial;
   FieldRange range;
   for (int k = 0; k < (uniform() ? 1 : 125); ++k)
     range.largest = std::max(range.largest, formula_(place(k, 5), 0).norm());

@@ -81,6 +81,8 @@ class ParticleHeat {
     const auto material = static_cast<int>(store.rotation[p].material);
     return materials_[material].heat_capacity.value_or(0) / store.motion[p].inverse_mass;
   }
+  /// K, of this rank's particles.
+  const double* temperatures(const Store& store) const { return store.columns.values(temperature_); }
   /// s, in which conduction between the smallest particles that overlap by a tenth of their radius would even out.
   double conduction_time(double radius, int material) const;
 

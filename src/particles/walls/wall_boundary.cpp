@@ -48,7 +48,7 @@ std::vector<WallBoundary> read_wall_boundaries(const Mesh& mesh, Options& option
       options.read(prefix, motion);
       const auto text = options.find(prefix + "_velocity");
       if (text || options.given(prefix + "_rotation_rate")) {
-        VectorExpression velocity("-" + prefix + "_velocity", motion.formula(prefix, text.value_or("0, 0, 0")));
+        VectorExpression velocity(prefix + "_velocity", motion.formula(prefix, text.value_or("0, 0, 0")));
         if (velocity.constant())
           boundary.velocity = velocity(Vec3::Zero(), 0);
         else

@@ -30,9 +30,15 @@ void WallMotionOptions::options(OptionGroup& option) {
 }
 
 WallMotion::WallMotion(const WallMotionOptions& options, const std::string& prefix) {
+  const auto refuse = [&](const char* name, const std::string& text) {
+    throw UserError(
+        fmt::format("option -{}_{}: '{}' depends on the place; a wall moves as a whole", prefix, name, text));
+  };
   VectorExpression velocity(prefix + "_velocity", options.velocity);
+  if (!velocity.uniform()) refuse("velocity", options.velocity);
   if (!velocity.constant() || velocity(Vec3::Zero(), 0).norm() > 0) velocity_ = std::move(velocity);
   Expression rate(prefix + "_rotation_rate", options.rotation_rate);
+  if (!rate.uniform()) refuse("rotation_rate", options.rotation_rate);
   if (!rate.constant() || rate(Vec3::Zero(), 0) != 0) rate_ = std::move(rate);
   if (rate_ && options.rotation_axis.norm() == 0)
     throw UserError(fmt::format("-{0}_rotation_axis is missing: -{0}_rotation_rate needs it", prefix));

@@ -120,7 +120,10 @@ void Walls::points(const Motion* particles, double time, std::vector<WallPoint>&
       const RigidWall& wall = rigid_[near.wall];
       wall.touch(centre, shifts_[near.shift], radius, begin, end, points);
       rigid += points.size() > before;
-      for (size_t k = before; k < points.size(); ++k) points[k].boundary = boundaries + near.wall;
+      for (size_t k = before; k < points.size(); ++k) {
+        points[k].boundary = boundaries + near.wall;
+        vec3(points[k].shift) = shifts_[near.shift];
+      }
     }
     if (rigid > 1) drop_dominated(centre, first, points);
     for (size_t k = first; k < points.size(); ++k) {
@@ -130,10 +133,12 @@ void Walls::points(const Motion* particles, double time, std::vector<WallPoint>&
       if (point.boundary < boundaries) {
         point.material = boundaries_[point.boundary].material;
         vec3(point.velocity) = boundaries_[point.boundary].velocity_at(place, time);
+        vec3(point.shift).setZero();
       } else {
         const RigidWall& wall = rigid_[point.boundary - boundaries];
         point.material = wall.material();
-        vec3(point.velocity) = wall.motion().velocity_at(place);
+        vec3(point.velocity) =
+            wall.motion().velocity_at(place - vec3(point.shift));  // an image turns about its own axis
       }
     }
   }
