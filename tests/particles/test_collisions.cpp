@@ -139,6 +139,38 @@ TEST_CASE("A ball that slides all through an oblique impact loses mu (1 + e) of 
   }
 }
 
+TEST_CASE("Friction in a strongly damped oblique impact opposes the slip from the first touch on, at any step",
+          "[particles]") {
+  // At the first touch the tangential dashpot alone is above mu F_n, and the tangential stiffness still small.
+  const double radius = 5e-3, vt = 0.4, vn = 0.2;
+  double before[2] = {};
+  for (const double step : {2e-5, 5e-6, 1.25e-6}) {
+    BoxCase setup;
+    setup.box(Vec3(-25e-3, -25e-3, 0), Vec3(25e-3, 25e-3, 50e-3));
+    setup.set("material_bead_density", "2500").set("material_bead_young_modulus", "1e8");
+    setup.set("material_bead_restitution", "0.6").set("material_bead_friction", "0.4");
+    setup.set("particles_speed", "1").set("particles_step", std::to_string(step));
+    BoxRun run(setup);
+    run.particles.add({sphere(Vec3(0, 0, 1.0005 * radius), Vec3(vt, 0, -vn), radius)});
+    double fastest = vt;
+    for (int k = 0; k < 50; ++k) {
+      run.particles.advance(k * 20e-6, 20e-6);
+      const auto state = gather(run.particles).at(0);
+      // Until the contact point has come to rest, which takes 2/7 of the slip, the ball only slows down.
+      if (state.v[0] - state.w[1] * radius > 0.05 * vt) CHECK(state.v[0] <= fastest + 1e-9);
+      fastest = std::min(fastest, state.v[0]);
+    }
+    const auto state = gather(run.particles).at(0);
+    INFO("step " << step << ": " << state.v[0] << " m/s, " << state.w[1] << " rad/s");
+    CHECK(state.v[2] > 0.5 * vn);
+    if (before[0] > 0) {
+      CHECK(state.v[0] == Approx(before[0]).epsilon(1e-3));
+      CHECK(state.w[1] == Approx(before[1]).epsilon(2e-3));
+    }
+    before[0] = state.v[0], before[1] = state.w[1];
+  }
+}
+
 TEST_CASE("Constant rolling friction stops a rolling ball after v^2 / (2 mu_r g 5/7)", "[particles]") {
   const double radius = 0.5e-3, v0 = 0.05, rolling_friction = 0.05;
   BoxCase setup;

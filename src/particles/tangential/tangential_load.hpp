@@ -57,8 +57,9 @@ SILT_INLINE Real grow_spring(const Contact<Real>& contact, Real stiffness, Real 
 }
 
 /// Second part: force = -(k zeta + gamma V_t), N, cut to mu |F_n| in length; at the limit the spring is cut back to
-/// what the limited force leaves for it, so that it starts to unload at once on reversal. Then it grows by the `rest`
-/// (s) of the step.
+/// what the limited force leaves for it, so that it starts to unload at once on reversal, but not beyond nothing: where
+/// the dashpot alone is above the limit (the first touch of a fast slip) a spring the other way round would be wound
+/// up, and push the slip on when k has grown. Then it grows by the `rest` (s) of the step.
 template <class Real>
 SILT_INLINE void limit_spring(const Contact<Real>& contact, Real normal_force, Real friction,
                               const SpringLaw<Real>& law, Real rest, Real* spring, Real* force) {
@@ -69,7 +70,8 @@ SILT_INLINE void limit_spring(const Contact<Real>& contact, Real normal_force, R
   const Real limit = friction * larger(normal_force, zero - normal_force);
   const Real over = one / (larger(length, least) * stiff);  // here too
   const Real kept = select(length > limit, limit * stiff * over, one);
-  const Real cut = select(length > limit, (length - limit) * over, zero);
+  const Real borne = law.stiffness * dot(spring, trial) * stiff * over;  // N, by the spring along the trial force
+  const Real cut = select(length > limit, smaller(length - limit, larger(borne, zero)) * over, zero);
   for (int d = 0; d < 3; ++d) {
     force[d] = zero - kept * trial[d];
     spring[d] = spring[d] - cut * trial[d] + rest * contact.slip[d];
