@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Chains and clusters of particles from the series of a run; started by scripts/chain_figures.
 
 Two particles are bonded when their surfaces are nearer than `gap` diameters. Of every output:

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws a picture of every case in inputs/fluid (or of those whose name contains a word) into docs/gallery/fluid.
 
 usage: scripts/fluid_pictures.py [word] [--keep]    needs build/silt, numpy, h5py, matplotlib (Debian's Python)

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes the STL surface of a hopper, a pipe over a cone: make_hopper_stl.py file radius outlet_radius cone_height
 pipe_height [facets round]. Axis z, outlet at z = 0, lengths in m. The surface is open at both ends: use it with side
 both."""

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes inputs/fluid/manufactured_*.yaml: flows made up from formulas, with the forces and heat sources that make them solutions.
 
 The void fraction varies in space and time; every element of the fluid has a case. Also the turbulence of a given flow

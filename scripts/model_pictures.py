@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws docs/models/*.png: the laws and fields by `silt -law_table_motion`, the others and the scenes by runs; started by scripts/model_pictures."""
 import glob
 import os

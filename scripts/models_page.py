@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Prints docs/models.md: what `silt -models_page` declares, with the pictures of docs/models and the cases that verify each model."""
 import glob
 import os

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws the velocity of channels over the distance from the wall, in wall units, beside the law of the wall:
 plot_wall_law.py out.png Re_tau:line_all.csv[:label] ...  Lines as the inputs channel_*.yaml write them (lengths in the
 half height, speeds in the friction speed)."""

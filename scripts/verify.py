@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Runs the verification cases and keeps the page of their figures; started by scripts/verify."""
 import argparse
 import math

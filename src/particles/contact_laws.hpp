@@ -52,8 +52,7 @@ class ContactLaws {
     prepare();
   }
 
-  /// At which share of a step springs are read at least: 1/2 where velocities are those predicted by velocity Verlet, 1
-  /// where they moved the particles (semi-implicit Euler).
+  /// At which share of a step springs are read at least (ParticleOptions::spring_share).
   void read_springs_at(double share) {
     least_share_ = share;
     prepare();

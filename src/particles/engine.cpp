@@ -52,7 +52,7 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
       heat_(ParticleHeat::create(options, materials, store.columns)) {
   contacts = ContactLists(laws_.history_components());
   wall_contacts = WallContacts(laws_.history_components(), liquid_.active());
-  laws_.read_springs_at(1 - options_.late_share());
+  laws_.read_springs_at(options_.spring_share());
   laws_.take_slip_at_radius(options_.slip_arm == "radius");
   if (options_.energy) energy_ = std::make_unique<EnergyLedger>(store.columns);
   if (walls_.count() > 0) last_wall_ = store.columns.add({.name = "last_wall", .output = false, .needed = false});
@@ -205,6 +205,7 @@ Integration Engine::pass(double h) {
   step.count = store.owned;
   step.dt = h;
   step.late_share = options_.late_share();
+  step.leapfrog = options_.leapfrog();
   step.second = (1 - step.late_share) * h * h;
   if (orientation_ >= 0) step.orientation = reinterpret_cast<double(*)[4]>(store.columns.values(orientation_));
   for (int d = 0; d < 3; ++d) step.gravity[d] = gravity_[d];
@@ -328,7 +329,9 @@ ParticleStep Engine::advance(double time, double dt) {
   if (!std::isfinite(sum)) trouble_ = find_bad();
   stop_if_any(trouble_);
   advanced_ = !settling_;
-  if (!migration_.all_at_home(store)) {
+  // Nobody asks for the cells of particles without a fluid: those that came into another rank's, and cannot leave the
+  // domain there, may wait until the lists are made anew.
+  if (!migration_.all_at_home(store, !store.acted_on && walls_.closed())) {
     const long long before = removed;
     rebuild(store.present, false, h);
     if (removed > before) {  // the forces that those gone exerted must not act on

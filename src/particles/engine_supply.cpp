@@ -78,14 +78,16 @@ void Engine::depart(const std::vector<Gone>& gone, bool within_step, double h) {
       // It ends the step without contacts at its new place: the corrector for a force that has gone to zero.
       const double share = 1 / (1 + one.action.added_mass * one.body.inverse_mass);
       const double z = one.action.exchange * one.body.inverse_mass * share * h;
-      const double phi = z > 0 ? -std::expm1(-z) * h / z : h;
-      const double corrector = brownian_.overdamped() && z > 0 ? h / z
-                               : z > 1e-2                      ? (1 - phi / h) * h / z
-                                                               : h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z / 120)));
+      const bool overdamped = brownian_.overdamped() && z > 0;
+      const double first = overdamped ? h / z : z > 0 ? -std::expm1(-z) * h / z : h;
+      const double corrector = overdamped ? h / z
+                               : z > 1e-2 ? (1 - first / h) * h / z
+                                          : h * (0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z / 120)));
+      const double held = options_.leapfrog() ? 0.5 : 0, taken = corrector - held * first, booked = (0.5 - held) * h;
       for (int d = 0; d < (plane_ ? 2 : 3); ++d) {
-        const double slower = corrector * share * one.body.inverse_mass * one.carried.force[d];
+        const double slower = taken * share * one.body.inverse_mass * one.carried.force[d];
         leaving.velocity[d] -= slower;
-        const double drag = -(corrector * share - 0.5 * h) * one.carried.force[d];
+        const double drag = -(taken * share - booked) * one.carried.force[d];
         leaving.action.impulse[d] += drag;
         leaving.action.work += drag * (leaving.velocity[d] + 0.5 * slower);
         impulses.drag[d] += drag;

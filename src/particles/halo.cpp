@@ -168,6 +168,8 @@ void Halo::forward(Store& store) {
   static const PetscLogEvent event = log_event("SiltGhosts");
   const Logged logged(event);
   const int width = motion_width_ + store.columns.ghost_width(false);
+  constexpr int ahead = 16;  // they lie anywhere in memory
+  const int last = static_cast<int>(send_index_.size()) - 1;
   requests_.clear();
   for (std::size_t n = 0; n < receive_rank_.size(); ++n)
     MPI_Irecv(&receive_buffer_[static_cast<std::size_t>(receive_start_[n]) * width],
@@ -175,6 +177,9 @@ void Halo::forward(Store& store) {
               &requests_.emplace_back());
   for (std::size_t n = 0; n < send_rank_.size(); ++n) {
     for (int k = send_start_[n]; k < send_start_[n + 1]; ++k) {
+      const int coming = send_index_[std::min(k + ahead, last)];
+      __builtin_prefetch(&store.motion[coming]);
+      __builtin_prefetch(&store.rotation[coming]);
       const Motion& motion = store.motion[send_index_[k]];
       double* record = &send_buffer_[static_cast<std::size_t>(k) * width];
       for (int d = 0; d < 3; ++d) {
@@ -182,7 +187,7 @@ void Halo::forward(Store& store) {
         record[3 + d] = motion.velocity[d];
         record[6 + d] = store.rotation[send_index_[k]].spin[d];
       }
-      store.columns.gather_ghost(send_index_[k], false, record + motion_width_);
+      if (width > motion_width_) store.columns.gather_ghost(send_index_[k], false, record + motion_width_);
     }
     MPI_Isend(&send_buffer_[static_cast<std::size_t>(send_start_[n]) * width],
               (send_start_[n + 1] - send_start_[n]) * width, MPI_DOUBLE, send_rank_[n], tag + 4, communicator_,
@@ -197,7 +202,7 @@ void Halo::forward(Store& store) {
       motion.velocity[d] = record[3 + d];
       store.rotation[store.owned + k].spin[d] = record[6 + d];
     }
-    store.columns.scatter_ghost(store.owned + k, false, record + motion_width_);
+    if (width > motion_width_) store.columns.scatter_ghost(store.owned + k, false, record + motion_width_);
     store.present[store.owned + k] = Load{};  // sums up forces that their owner computes too
   }
 }

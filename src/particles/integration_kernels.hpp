@@ -95,7 +95,8 @@ SILT_INLINE void move_freely(Integration& step, const FreeSteps& steps, int firs
     }
 }
 
-template <bool correct, bool drift, bool fluid, bool turning, bool sparse>
+/// leapfrog: the drift gives half of the impulse of its forces' contacts, and the next corrector the other.
+template <bool correct, bool drift, bool fluid, bool turning, bool sparse, bool leapfrog>
 void integrate_all(Integration& step) {
   const double h = step.dt;
   const Quad move = quad(step.move), turn = quad(step.turn), gravity = quad(step.gravity);
@@ -124,43 +125,46 @@ void integrate_all(Integration& step) {
     if constexpr (correct) {
       const Quad change = move * (force - quad(step.previous[p].force));
       const Quad turned = turn * (torque - quad(step.previous[p].torque));
+      Quad kick = every(corrector) * change, own = every(0.5 * h) * change;
+      Quad twist = every(turn_corrector) * turned, own_twist = every(0.5 * h) * turned;
+      if constexpr (leapfrog) {  // the other half of what the forces before give
+        const Quad before = move * quad(step.previous[p].force), torque_before = turn * quad(step.previous[p].torque);
+        kick += every(0.5 * first) * before, own += every(0.5 * h) * before;
+        twist += every(0.5 * turn_first) * torque_before, own_twist += every(0.5 * h) * torque_before;
+      }
+      const Quad faster = every(share * inverse_mass) * kick, spun = every(inverse_inertia) * twist;
       if constexpr (fluid) {
-        const Quad faster = every(corrector * share * inverse_mass) * change;
-        const Quad taken = every(corrector * share - 0.5 * h) * change;
+        const Quad taken = every(share) * kick - own;
         impulse += taken;
         // An impulse does the work of the mean of the velocities before and after all that act together.
         impulse[3] += scalar_product(taken, velocity + every(0.5) * faster);
-        velocity += faster;
-      } else {
-        velocity += every(corrector * inverse_mass) * change;
       }
-      const Quad spun = every(turn_corrector * inverse_inertia) * turned;
-      if constexpr (turning)
-        impulse[3] += scalar_product(every(turn_corrector - 0.5 * h) * turned, spin + every(0.5) * spun);
+      if constexpr (turning) impulse[3] += scalar_product(twist - own_twist, spin + every(0.5) * spun);
+      velocity += faster;
       spin += spun;
     }
     if constexpr (drift) {
-      Quad steady = every(inverse_mass) * force + gravity;
-      Quad acceleration = steady;
-      if constexpr (fluid) {
-        steady += quad(step.drag[p].acceleration);
-        acceleration = every(share) * steady + every(step.drag[p].rate) * (quad(step.drag[p].velocity) - velocity);
-        impulse += every(1 / inverse_mass) * move * (every(first) * acceleration - every(h) * steady);
-        const Quad others = every(inverse_mass) * force + gravity;
-        impulse[3] += scalar_product(every(1 / inverse_mass) * move * (every(first) * acceleration - every(h) * others),
-                                     velocity + every(0.5 * first) * move * acceleration);
-      }
+      Quad contact = every(inverse_mass) * force;
+      Quad acceleration = contact + gravity;
+      if constexpr (fluid)
+        acceleration = every(share) * (acceleration + quad(step.drag[p].acceleration)) +
+                       every(step.drag[p].rate) * (quad(step.drag[p].velocity) - velocity);
       acceleration *= move;
       const Quad position = quad(motion.position) + (every(h) * move) * velocity + every(second) * acceleration;
-      velocity += every(first) * acceleration;
-      Quad turned = every(inverse_inertia) * torque;
-      if constexpr (turning) {
-        const Quad others = turned;
-        turned += every(step.turning[p].rate) * (quad(step.turning[p].spin) - spin);
-        impulse[3] +=
-            scalar_product(every(1 / inverse_inertia) * turn * (every(turn_first) * turned - every(h) * others),
-                           spin + every(0.5 * turn_first) * turn * turned);
+      Quad gained = every(first) * acceleration;
+      if constexpr (leapfrog) {
+        contact *= every(0.5);
+        gained -= every(first * share) * move * contact;
       }
+      if constexpr (fluid) {
+        const Quad mass = every(1 / inverse_mass), others = every(h) * move * (contact + gravity);
+        impulse += mass * (gained - others - every(h) * move * quad(step.drag[p].acceleration));
+        impulse[3] += scalar_product(mass * (gained - others), velocity + every(0.5) * gained);
+      }
+      velocity += gained;
+      Quad couple = every(inverse_inertia) * torque;
+      Quad turned = couple;
+      if constexpr (turning) turned += every(step.turning[p].rate) * (quad(step.turning[p].spin) - spin);
       turned *= turn;
       if (step.orientation || step.turned) {
         // As the position: exact for a constant torque, whatever the hold of the fluid.
@@ -168,7 +172,15 @@ void integrate_all(Integration& step) {
         if (step.orientation) turn_by(step.orientation[p], angle[0], angle[1], angle[2]);
         if (step.turned) *reinterpret_cast<Quad*>(step.turned[p]) = angle;
       }
-      spin += every(turn_first) * turned;
+      Quad turn_gained = every(turn_first) * turned;
+      if constexpr (leapfrog) {
+        couple *= every(0.5);
+        turn_gained -= every(turn_first) * turn * couple;
+      }
+      if constexpr (turning)
+        impulse[3] += scalar_product(every(1 / inverse_inertia) * (turn_gained - every(h) * turn * couple),
+                                     spin + every(0.5) * turn_gained);
+      spin += turn_gained;
       const Quad moved = position - quad(motion.position);
       *reinterpret_cast<Quad*>(motion.position) = position;
       ways.add(square_lengths(moved, Quad{}, Quad{}, Quad{}));
@@ -211,25 +223,27 @@ void integrate_all(Integration& step) {
   }
 }
 
-template <bool fluid, bool turning, bool sparse>
+template <bool fluid, bool turning, bool sparse, bool leapfrog>
 SILT_INLINE void choose_pass(Integration& step) {
   if (step.correct && step.drift)
-    integrate_all<true, true, fluid, turning, sparse>(step);
+    integrate_all<true, true, fluid, turning, sparse, leapfrog>(step);
   else if (step.correct)
-    integrate_all<true, false, fluid, turning, sparse>(step);
+    integrate_all<true, false, fluid, turning, sparse, leapfrog>(step);
   else
-    integrate_all<false, true, fluid, turning, sparse>(step);
+    integrate_all<false, true, fluid, turning, sparse, leapfrog>(step);
 }
-void integrate(Integration& step) {
+template <bool leapfrog>
+SILT_INLINE void choose_forces(Integration& step) {
   if (step.turning)
-    choose_pass<true, true, false>(step);
+    choose_pass<true, true, false, leapfrog>(step);
   else if (step.drag)
-    choose_pass<true, false, false>(step);
-  else if (step.loaded && step.loaded_before)
-    choose_pass<false, false, true>(step);
+    choose_pass<true, false, false, leapfrog>(step);
+  else if (!leapfrog && step.loaded && step.loaded_before)
+    choose_pass<false, false, true, false>(step);
   else
-    choose_pass<false, false, false>(step);
+    choose_pass<false, false, false, leapfrog>(step);
 }
+void integrate(Integration& step) { step.leapfrog ? choose_forces<true>(step) : choose_forces<false>(step); }
 
 }  // namespace SILT_ISA
 }  // namespace silt

@@ -74,10 +74,17 @@ void Migration::each_on_the_move(const Store& store, Act&& act) const {
   }
 }
 
-bool Migration::all_at_home(Store& store) {
+bool Migration::within_periods(const double* x) const {
+  for (int d = 0; d < 3; ++d)
+    if (mesh_.periodic[d] && !(x[d] >= mesh_.lower[d] && x[d] <= mesh_.upper[d])) return false;
+  return true;
+}
+
+bool Migration::all_at_home(Store& store, bool strays) {
   std::vector<std::pair<int, int>> moved;  // who came into which cell
   bool away = false;
   each_on_the_move(store, [&](int p, const Place& place) {
+    if (strays && place.state == Place::State::remote && within_periods(store.motion[p].position)) return;
     // A wrap moves the particle by a period, and with it the frame its neighbours' lists were built in.
     away = away || !place.inside() || place.wrap != std::array<int, 3>{0, 0, 0};
     moved.emplace_back(p, place.cell);

@@ -24,7 +24,7 @@ struct Gone {
 /// wraps positions into the periodic domain. Particles may cross any number of ranks at once.
 class Migration {
  public:
-  Migration(const Mesh& mesh, MPI_Comm communicator) : locator_(mesh), communicator_(communicator) {}
+  Migration(const Mesh& mesh, MPI_Comm communicator) : mesh_(mesh), locator_(mesh), communicator_(communicator) {}
 
   /// Sets Store::cell and wraps the positions of the particles that are still on this rank; whether any particle of any
   /// rank is not, so that run() must follow. Collective.
@@ -34,8 +34,9 @@ class Migration {
   std::vector<Gone> run(Store& store, Aligned<Load>& carried, ParticleRows& contacts, ParticleRows& walls);
 
   /// Whether all owned particles are still in local cells; updates their cells and wraps their positions only then.
+  /// `strays`: those in another rank's cells, but not across a periodic side, count as at home and keep their old cell.
   /// Collective.
-  bool all_at_home(Store& store);
+  bool all_at_home(Store& store, bool strays);
 
   const Locator& locator() const { return locator_; }
 
@@ -44,7 +45,9 @@ class Migration {
   template <class Act>
   void each_on_the_move(const Store& store, Act&& act) const;
   void exchange(std::vector<std::vector<char>>& outgoing, std::vector<char>& incoming);
+  bool within_periods(const double* x) const;
 
+  const Mesh& mesh_;
   Locator locator_;
   MPI_Comm communicator_;
   struct Away {

@@ -16,7 +16,12 @@ struct ParticleOptions {
   std::string integrator = "velocity_verlet", slip_arm = "contact_point";
   bool plane = false, fixed = false, orientation = false, energy = false;
   /// The share of a step's new force in the change of velocity over that step.
-  double late_share() const { return integrator == "velocity_verlet" ? 0.5 : 0.0; }
+  double late_share() const { return integrator == "semi_implicit_euler" ? 0.0 : 0.5; }
+  /// Whether contact laws see velocities with half of the step's contact impulse only.
+  bool leapfrog() const { return integrator == "leapfrog"; }
+  /// At which share of a step springs are read at least: 1/2 where velocities are those predicted for its end, 1 where
+  /// they are those that moved the particles.
+  double spring_share() const { return integrator == "velocity_verlet" ? 0.5 : 1.0; }
   void options(OptionGroup& option) {
     option("step", step, "s", "time step of the particles; 0: as long as the step fractions allow", non_negative);
     option("step_fraction", step_fraction, "-", "longest step as a share of the shortest collision",
@@ -35,8 +40,10 @@ struct ParticleOptions {
            Range{0, 1, true, false});
     option("deep", deep, {"stop", "warn"}, "what to do about an overlap beyond particles_overlap_limit");
     option("fast", fast, {"stop", "warn"}, "what to do about a particle that moves more than its radius in a step");
-    option("integrator", integrator, {"velocity_verlet", "semi_implicit_euler"},
-           "velocity_verlet: second order in the step; semi_implicit_euler: first order, the velocity first");
+    option(
+        "integrator", integrator, {"velocity_verlet", "leapfrog", "semi_implicit_euler"},
+        "velocity_verlet: second order in the step; leapfrog: contact laws see the velocities of half a step before, "
+        "as in LAMMPS, first order where they damp; semi_implicit_euler: first order, the velocity first");
     option("slip_arm", slip_arm, {"contact_point", "radius"},
            "where the slip of a contact takes the spins: contact_point, where the force acts; radius: at the whole "
            "radius, as LAMMPS does");

@@ -179,6 +179,7 @@ struct Integration {
   double (*orientation)[4] = nullptr;  ///< unit quaternions w, x, y, z; null: not wanted
   double (*turned)[4] = nullptr;       ///< out: rad, the rotation vector of the step; null: not wanted
   double late_share = 0.5;             ///< of the forces at the end of a step in its impulse
+  bool leapfrog = false;  ///< half of the impulse of the forces at its beginning, too, is given by the corrector only
   alignas(32) double gravity[4] = {0, 0, 0, 0};
   alignas(32) double move[4] = {1, 1, 1, 0};  ///< directions that may move
   alignas(32) double turn[4] = {1, 1, 1, 0};  ///< axes that may turn

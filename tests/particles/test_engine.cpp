@@ -237,6 +237,38 @@ TEST_CASE("A sheared pair keeps its tangential spring when it crosses ranks", "[
   CHECK(largest_difference(run_at(0), run_at(25)) < 1e-7);
 }
 
+TEST_CASE("Without a fluid, particles that come into another rank's cells wait there until the lists are made anew",
+          "[particles][mpi]") {
+  // Pairs in contact, all adrift along the box: on any rank count the lists last as long, unless somebody (a fluid, an
+  // outlet) wants to know the cells.
+  enum class Asks { nobody, fluid, outlet };
+  const auto run_for = [](Asks asks, int& rebuilds) {
+    BoxCase setup;
+    setup.box(Vec3::Zero(), Vec3(60e-3, 6e-3, 6e-3));
+    setup.mesh.cells = {30, 2, 2};
+    setup.set("material_bead_young_modulus", "1e5").set("particles_speed", "1").set("particles_step", "1e-5");
+    setup.set("particles_skin", "1e-3");
+    if (asks == Asks::outlet) setup.set("boundary_x_max_particles", "outlet");
+    BoxRun run(setup);
+    std::vector<Seed> seeds;
+    for (int k = 0; k < 40; ++k)
+      for (int side = 0; side < 2; ++side)
+        seeds.push_back(sphere(Vec3((1.3 + 1.1 * k) * 1e-3, 3e-3, (2.5 + 0.995 * side) * 1e-3), {2, 0, 0}, 0.5e-3));
+    run.particles.add(seeds);
+    if (asks == Asks::fluid && run.particles.owned() > 0) run.particles.fluid_action(0);
+    rebuilds = 0;
+    for (int n = 0; n < 40; ++n) rebuilds += run.particles.advance(n * 5e-5, 5e-5).rebuilds;
+    return gather(run.particles);
+  };
+  int seldom = 0, often = 0, outlet = 0;
+  const auto state = run_for(Asks::nobody, seldom);
+  CHECK(state.size() == 80);
+  CHECK(seldom <= 4e-3 / (0.4 * 1e-3) + 1);  // 4 mm, half a skin each time
+  CHECK(largest_difference(state, run_for(Asks::fluid, often)) < 1e-12);
+  CHECK(largest_difference(state, run_for(Asks::outlet, outlet)) < 1e-12);
+  if (mpi_size() > 1) CHECK(std::min(often, outlet) >= seldom + 2);
+}
+
 TEST_CASE("A particle that passes several ranks in one step arrives, and one through a wall is reported",
           "[particles][mpi]") {
   BoxCase setup;

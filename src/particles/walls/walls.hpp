@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,11 @@ class Walls {
 
   const std::vector<WallBoundary>& boundaries() const { return boundaries_; }
   BoundaryRole role(int boundary) const { return boundaries_[boundary].role; }
+  /// Whether all boundaries of the mesh are walls.
+  bool closed() const {
+    return std::all_of(boundaries_.begin(), boundaries_.end(),
+                       [](const auto& boundary) { return boundary.role == BoundaryRole::wall; });
+  }
   const Surface& surface() const { return surface_; }
   const WallShape& shape() const { return shape_; }
 
