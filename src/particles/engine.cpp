@@ -305,7 +305,7 @@ ParticleStep Engine::advance(double time, double dt) {
     if (state[1] > 0 || out_of_lists())
       rebuild(store.previous, true, h);
     else
-      halo_.forward(store);
+      halo_.begin(store);  // evaluate() waits for them
     const Vec3 before = wall_total_, drawn = field_total_;
     add_wall_impulses(early * h);
     evaluate(time + (s + 1) * h, h);

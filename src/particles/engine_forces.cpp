@@ -30,15 +30,18 @@ void Engine::want_turns(Integration& step) {
 
 void Engine::evaluate(double time, double dt) {
   const LawSetup& setup = laws_.setup();
+  // Walls need no ghosts, which are under way meanwhile. A wall that has been left in this step is looked at once more
+  // where a law's force ends with a jump.
+  walls_.points(store.motion.data(), time, wall_contacts.next(), setup.jumping ? strode_ : 0);
+  wall_contacts.adopt(store.motion.data(), setup.leave_gap);
+  halo_.finish(store);
+
   CandidateSweep search;
   search.motion = store.motion.data();
   search.periods = periods_;
   search.enter_gap = setup.enter_gap;
   contacts.look(search, path_ / skin_, skin_, kernels_.candidates);
 
-  // A wall that has been left in this step is looked at once more where a law's force ends with a jump.
-  walls_.points(store.motion.data(), time, wall_contacts.next(), setup.jumping ? strode_ : 0);
-  wall_contacts.adopt(store.motion.data(), setup.leave_gap);
   liquid_.exchange(store, contacts, wall_contacts, periods_, dt);
 
   PairSweep sweep;

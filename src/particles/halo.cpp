@@ -153,6 +153,7 @@ void Halo::fetch(Store& store) {
               (send_start_[n + 1] - send_start_[n]) * width, MPI_DOUBLE, send_rank_[n], tag + 3, communicator_,
               &requests_.emplace_back());
   MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+  requests_.clear();
   for (int k = 0; k < store.ghosts; ++k) {
     const double* record = &receive_buffer_[static_cast<std::size_t>(k) * width];
     __builtin_memcpy(&store.motion[store.owned + k], record, sizeof(Motion));
@@ -163,7 +164,7 @@ void Halo::fetch(Store& store) {
   }
 }
 
-void Halo::forward(Store& store) {
+void Halo::begin(const Store& store) {
   if (send_rank_.empty() && receive_rank_.empty()) return;
   static const PetscLogEvent event = log_event("SiltGhosts");
   const Logged logged(event);
@@ -193,7 +194,15 @@ void Halo::forward(Store& store) {
               (send_start_[n + 1] - send_start_[n]) * width, MPI_DOUBLE, send_rank_[n], tag + 4, communicator_,
               &requests_.emplace_back());
   }
+}
+
+void Halo::finish(Store& store) {
+  if (requests_.empty()) return;
+  static const PetscLogEvent event = log_event("SiltGhostsEnd");
+  const Logged logged(event);
+  const int width = motion_width_ + store.columns.ghost_width(false);
   MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+  requests_.clear();
   for (int k = 0; k < store.ghosts; ++k) {
     const double* record = &receive_buffer_[static_cast<std::size_t>(k) * width];
     Motion& motion = store.motion[store.owned + k];

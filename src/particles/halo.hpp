@@ -18,16 +18,18 @@ class Halo {
   /// that of an owned one, and no others. `own`: bins of the owned particles in the grid; `reach`: at least the
   /// distance of the centres of any such two. Collective.
   void build(Store& store, const Periods& periods, const CellGrid& grid, const Bins& own, double reach, double gap);
-  /// Refreshes position, velocity, spin and the columns that change in every step of the ghosts. Collective among
-  /// neighbours.
-  void forward(Store& store);
-  /// Bytes this rank sends in one forward().
+  /// Begins to refresh position, velocity, spin and the columns that change in every step of the ghosts; finish() ends
+  /// it. In between the ghosts are those of before. Collective among neighbours.
+  void begin(const Store& store);
+  /// Nothing where nothing has begun.
+  void finish(Store& store);
+  /// Bytes this rank sends in one begin().
   std::size_t bytes(const Store& store) const {
     return send_index_.size() * (motion_width_ + store.columns.ghost_width(false)) * sizeof(double);
   }
 
  private:
-  static constexpr int motion_width_ = 9;  ///< doubles of a ghost in forward(), before its columns
+  static constexpr int motion_width_ = 9;  ///< doubles of a ghost in begin(), before its columns
   struct Offer;
   /// Ranks whose particles may touch this one's, with what this rank would send.
   std::vector<Offer> offer(const Store& store, const Periods& periods, double reach);
@@ -39,7 +41,7 @@ class Halo {
   std::vector<int> send_rank_, send_start_, send_index_;  ///< per neighbour a run of send_index_
   std::vector<int> receive_rank_, receive_start_;
   std::vector<double> send_buffer_, receive_buffer_;
-  std::vector<MPI_Request> requests_;
+  std::vector<MPI_Request> requests_;  ///< not empty between begin() and finish()
 };
 
 }  // namespace silt
