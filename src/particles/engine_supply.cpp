@@ -38,6 +38,7 @@ std::vector<PlacedSphere> gather_near(const Store& store, const Box& box, double
   MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, communicator);
   std::sort(all.begin(), all.end());
   std::vector<PlacedSphere> spheres;
+  spheres.reserve(all.size());
   for (const auto& one : all) spheres.push_back({Vec3(one[1], one[2], one[3]), one[4]});
   return spheres;
 }

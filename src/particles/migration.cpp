@@ -201,6 +201,7 @@ std::vector<Gone> Migration::run(Store& store, Aligned<Load>& carried, ParticleR
   std::vector<Gone> gone;
   if (!mpi_any(!lost_sight.empty())) return gone;
   std::vector<Vec3> points;
+  points.reserve(lost_sight.size());
   for (const auto& traveller : lost_sight) points.push_back(vec3(traveller.packet().body.position));
   const std::vector<Place> places = locator_.settle(points);
   for (std::size_t k = 0; k < places.size(); ++k) {
