@@ -165,8 +165,8 @@ void Halo::fetch(Store& store) {
 }
 
 void Halo::begin(const Store& store) {
+  static const PetscLogEvent event = log_event("SiltGhosts");  // on every rank, in the same order
   if (send_rank_.empty() && receive_rank_.empty()) return;
-  static const PetscLogEvent event = log_event("SiltGhosts");
   const Logged logged(event);
   const int width = motion_width_ + store.columns.ghost_width(false);
   constexpr int ahead = 16;  // they lie anywhere in memory
@@ -197,8 +197,8 @@ void Halo::begin(const Store& store) {
 }
 
 void Halo::finish(Store& store) {
-  if (requests_.empty()) return;
   static const PetscLogEvent event = log_event("SiltGhostsEnd");
+  if (requests_.empty()) return;
   const Logged logged(event);
   const int width = motion_width_ + store.columns.ghost_width(false);
   MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);

@@ -164,7 +164,8 @@ struct alignas(64) TurnStep {
 
 /// Velocity Verlet as predictor (drift: position, and velocity with the present force, so that velocity-dependent
 /// contact forces see the velocity of their own time) and corrector (half the change of the force); semi-implicit Euler
-/// is a drift with second = h^2, without corrector.
+/// is a drift with second = h^2, without corrector; leapfrog drifts with half of the present force and corrects with
+/// the other half and half of the new one.
 struct Integration {
   Motion* motion = nullptr;
   Rotation* rotation = nullptr;
