@@ -109,6 +109,16 @@ void CellEntries::add_rows(double* to, int cell, const int* entry, const double*
     }
 }
 
+void CellEntries::prefetch(const Arrays& to, int cell) const {
+  if (!blocked_ || remote_[cell]) return;
+  const size_t pairs = static_cast<size_t>(points_.points) * points_.points, width = points_.width[0];
+  constexpr size_t line = 64 / sizeof(double);
+  const int* entry = &entry_[cell * pairs];
+  for (size_t k = 0; k < pairs; ++k)
+    for (size_t at = 0; at < width * width; at += line)
+      __builtin_prefetch(to.values_ + static_cast<size_t>(entry[k]) * (width * width) + at, 1);
+}
+
 bool CellEntries::add(Arrays& to, int cell, const double* values) const {
   if (remote_[cell]) return false;
   const int* entry = &entry_[static_cast<size_t>(cell) * points_.points * points_.points];

@@ -34,6 +34,8 @@ class CellEntries {
     double* values_ = nullptr;
     bool blocked_;
   };
+  /// Asks for the cell's blocks (BAIJ) ahead of add(): they are scattered over the matrix.
+  void prefetch(const Arrays& to, int cell) const;
   /// Adds values [rows][rows] of the cell. False, with nothing done, where a row belongs to another rank.
   bool add(Arrays& to, int cell, const double* values) const;
 

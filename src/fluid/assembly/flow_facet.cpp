@@ -71,6 +71,12 @@ FlowFacets::FlowFacets(const Mesh& mesh, int order)
         quadratic_shape(mesh.cell, place, p.N.data(), reinterpret_cast<double(*)[3]>(p.dN.data()));
       points_[f].push_back(std::move(p));
     }
+    nodes_.emplace_back(), vertices_.emplace_back();
+    for (int a = 0; a < nv_; ++a)
+      if (on_facet(f, a)) nodes_[f].push_back(a);
+    for (int a = 0; a < np_; ++a)
+      if (std::any_of(points_[f].begin(), points_[f].end(), [a](const Point& p) { return std::abs(p.M[a]) > 1e-12; }))
+        vertices_[f].push_back(a);
   }
   FlowData data;
   data.coordinates = mesh.cell_coordinates.data();
@@ -106,7 +112,34 @@ void FlowFacets::add(const FlowData& data, int f, const FacetTerm& term, double*
 }
 
 template <int dim>
+void FlowFacets::add_flow(const FlowData& data, int f, double* residual, double* matrix) const {
+  const BoundaryFacet& facet = mesh_.facets[f];
+  const int* v = data.velocity_nodes + static_cast<size_t>(facet.cell) * nv_;
+  const std::vector<Point>& points = points_[facet.facet];
+  const std::vector<int>&nodes = nodes_[facet.facet], &vertices = vertices_[facet.facet];
+  double flux[27][dim];
+  for (const int b : nodes)
+    for (int j = 0; j < dim; ++j) flux[b][j] = data.alpha[v[b]] * data.state[data.layout.velocity_stride * v[b] + j];
+  for (size_t q = 0; q < points.size(); ++q) {
+    const double *N = points[q].N.data(), *M = points[q].M.data();
+    const Vec3& normal = normals_[static_cast<size_t>(f) * points.size() + q];
+    double flow = 0;
+    for (const int b : nodes)
+      for (int j = 0; j < dim; ++j) flow += N[b] * flux[b][j] * normal[j];
+    for (const int a : vertices) {
+      const double test = data.parameters.continuity_scale * M[a];
+      residual[pressure_row(a)] -= test * flow;
+      if (!matrix) continue;
+      for (const int b : nodes)
+        for (int j = 0; j < dim; ++j)
+          matrix[pressure_row(a) * rows_ + velocity_row(b, j)] -= test * N[b] * data.alpha[v[b]] * normal[j];
+    }
+  }
+}
+
+template <int dim>
 void FlowFacets::add_terms(const FlowData& data, int f, const FacetTerm& term, double* residual, double* matrix) const {
+  if (!term.pressure_boundary) return add_flow<dim>(data, f, residual, matrix);
   constexpr int directions = dim + dim * dim;
   using D = Dual<directions>;
   const BoundaryFacet& facet = mesh_.facets[f];
@@ -114,27 +147,7 @@ void FlowFacets::add_terms(const FlowData& data, int f, const FacetTerm& term, d
   const int* n = data.vertices + static_cast<size_t>(facet.cell) * np_;
   const FlowParameters& k = data.parameters;
   const double viscosity = k.viscosity + (data.eddy_viscosity ? data.eddy_viscosity[facet.cell] : 0);
-  const std::vector<Point>& points = points_[facet.facet];
-  for (size_t q = 0; q < points.size(); ++q) {
-    const Point& point = points[q];
-    if (!term.pressure_boundary) {
-      const Vec3& normal = normals_[static_cast<size_t>(f) * points.size() + q];
-      double flow = 0;
-      for (int b = 0; b < nv_; ++b) {
-        if (point.N[b] == 0) continue;
-        for (int j = 0; j < dim; ++j)
-          flow += point.N[b] * data.alpha[v[b]] * data.state[data.layout.velocity_stride * v[b] + j] * normal[j];
-      }
-      for (int a = 0; a < np_; ++a) {
-        const double test = k.continuity_scale * point.M[a];
-        residual[pressure_row(a)] -= test * flow;
-        if (!matrix || point.M[a] == 0) continue;
-        for (int b = 0; b < nv_; ++b)
-          for (int j = 0; j < dim; ++j)
-            matrix[pressure_row(a) * rows_ + velocity_row(b, j)] -= test * point.N[b] * data.alpha[v[b]] * normal[j];
-      }
-      continue;
-    }
+  for (const Point& point : points_[facet.facet]) {
     const Geometry g = geometry(data, f, point);
     double alpha = 0, pressure = 0, u[dim] = {}, gradient[dim][dim] = {};
     for (int b = 0; b < nv_; ++b) {

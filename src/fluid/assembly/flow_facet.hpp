@@ -53,6 +53,9 @@ class FlowFacets {
   Geometry geometry(const FlowData& data, int f, const Point& point) const;
   struct Values;
   Values values(const FlowData& data, int f, const Point& point, const Geometry& g) const;
+  /// The terms where the flow is prescribed.
+  template <int dim>
+  void add_flow(const FlowData& data, int f, double* residual, double* matrix) const;
   template <int dim>
   void add_terms(const FlowData& data, int f, const FacetTerm& term, double* residual, double* matrix) const;
   int velocity_row(int a, int i) const { return order_ == 1 ? a * (dimension_ + 1) + i : a * dimension_ + i; }
@@ -60,8 +63,9 @@ class FlowFacets {
 
   const Mesh& mesh_;
   int order_, dimension_, nv_, np_, rows_;
-  std::vector<std::vector<Point>> points_;  ///< [facet of the cell]
-  std::vector<Vec3> normals_;               ///< [facets][points] outward, times weight and area
+  std::vector<std::vector<Point>> points_;          ///< [facet of the cell]
+  std::vector<std::vector<int>> nodes_, vertices_;  ///< [facet of the cell] whose functions are not zero there
+  std::vector<Vec3> normals_;                       ///< [facets][points] outward, times weight and area
 };
 
 }  // namespace silt

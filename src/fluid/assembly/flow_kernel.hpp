@@ -26,12 +26,18 @@ void test_gradients(const V (&w)[E::NV], const FlowPoint<E, V>& at, const FlowRe
   }
 }
 
-/// out[row] += values of the test functions times what stands against them in r (already times the volume).
+/// out[row] += values of the test functions times what stands against them in r (already times the volume); what all
+/// functions of a linear element have alike goes to the rows behind them (flow_term).
 template <class E, class V>
 void test_values(const FlowTable& t, int q, const FlowResidual<V, E::dim>& r, V* out) {
-  for (int a = 0; a < E::NV; ++a)
-    for (int i = 0; i < E::dim; ++i) out[E::velocity_row(a, i)] += r.momentum[i] * t.N[q][a];
-  for (int a = 0; a < E::NP; ++a) out[E::pressure_row(a)] += r.continuity * t.M[q][a];
+  for (int m = 0; m < (E::linear ? 2 : E::NV); ++m) {
+    const auto [a, N] = flow_term<E>(t.N[q], q, m);
+    for (int i = 0; i < E::dim; ++i) out[E::velocity_row(a, i)] += r.momentum[i] * N;
+  }
+  for (int m = 0; m < (E::linear ? 2 : E::NP); ++m) {
+    const auto [a, M] = flow_term<E>(t.M[q], q, m);
+    out[E::pressure_row(a)] += r.continuity * M;
+  }
 }
 
 /// matrix[row][column] += derivative of the rows at one point.
@@ -78,10 +84,10 @@ void add_jacobian(const FlowBatch<E, V>& b, const V (&w)[E::NV], const FlowPoint
   }
 }
 
-/// Inlined to the last call: sums kept in memory between calls would cost more than the arithmetic.
+/// R [rows], with one node more for a linear element (test_values). Inlined to the last call: sums kept in memory
+/// between calls would cost more than the arithmetic.
 template <class E, class V>
-[[gnu::flatten]] void evaluate_residual(const FlowData& data, const FlowBatch<E, V>& b, const V (&w)[E::NV],
-                                        V (&R)[E::rows]) {
+[[gnu::flatten]] void evaluate_residual(const FlowData& data, const FlowBatch<E, V>& b, const V (&w)[E::NV], V* R) {
   constexpr int dim = E::dim;
   const FlowTable& t = *data.table;
   double mean[dim];
@@ -110,7 +116,9 @@ template <class E, class V>
         for (int j = 0; j < dim; ++j) sum.stress[i][j] += value.stress[i][j];
       }
       sum.pressure_stress += value.pressure_stress;
-      if (q == t.points - 1) test_gradients<E, V>(w, at, sum, R);
+      if (q < t.points - 1) return;
+      test_gradients<E, V>(w, at, sum, R);
+      for (int row = 0; row < E::rows; ++row) R[row] += R[E::rows + row % (dim + 1)];
     }
   });
 }
@@ -136,7 +144,7 @@ void evaluate_flow(const FlowData& data, int first, int count, double* residual,
     evaluate_matrix<E, V>(data, b, w, K);
     store_by_lane(K, rows * rows, matrix);
   } else {
-    V R[rows] = {};
+    V R[rows + (E::linear ? E::dim + 1 : 0)] = {};
     evaluate_residual<E, V>(data, b, w, R);
     store_by_lane(R, rows, residual);
   }

@@ -130,6 +130,7 @@ PetscErrorCode FlowSystem::jacobian(const StepFields& fields, Vec x, Mat matrix)
     };
     for (int first = 0; first < mesh_.cells; first += kernel_.lanes) {
       const int count = std::min(kernel_.lanes, mesh_.cells - first);
+      for (int l = 0; l < count; ++l) entries_->prefetch(arrays, first + l);
       kernel_.evaluate(d, first, count, residual.data(), values.data());
       for (int l = 0; l < count; ++l) add(first + l, &values[l * size]);
     }

@@ -210,15 +210,16 @@ void FlowSystem::local_residual(const StepFields& fields, const std::vector<doub
   const int rows = kernel_.rows;
   std::vector<double> values(static_cast<size_t>(kernel_.lanes) * rows);
   std::vector<PetscInt> places(rows);
-  const auto add = [&](int cell, const double* r) {
-    if (equal_order()) {
-      const int* v = &mesh_.cell_nodes[static_cast<size_t>(cell) * mesh_.nodes_per_cell];
-      for (int a = 0; a < mesh_.nodes_per_cell; ++a) {
-        double* to = &residual[static_cast<size_t>(v[a]) * block_];
-        for (int k = 0; k < block_; ++k) to[k] += *r++;
-      }
-      return;
+  const auto add_blocks = [&](int cell, const double* r, auto block) {
+    const int* v = &mesh_.cell_nodes[static_cast<size_t>(cell) * mesh_.nodes_per_cell];
+    for (int a = 0; a < mesh_.nodes_per_cell; ++a, r += block) {
+      double* to = &residual[static_cast<size_t>(v[a]) * block];
+      for (int k = 0; k < block; ++k) to[k] += r[k];
     }
+  };
+  const auto add = [&](int cell, const double* r) {
+    if (block_ == 4) return add_blocks(cell, r, std::integral_constant<int, 4>{});
+    if (block_ == 3) return add_blocks(cell, r, std::integral_constant<int, 3>{});
     cell_places(cell, places.data());
     for (int k = 0; k < rows; ++k) residual[places[k]] += r[k];
   };

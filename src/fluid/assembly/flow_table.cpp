@@ -1,6 +1,8 @@
 #include "fluid/assembly/flow_table.hpp"
 
+#include <cmath>
 #include <map>
+#include <stdexcept>
 
 #include "fluid/space/quadratic_element.hpp"
 
@@ -20,6 +22,12 @@ FlowTable make_table(Cell cell, int order) {
     else
       quadratic_shape(cell, rule.point[q].data(), table.N[q], table.dN[q]);
   }
+  if (simplex && order == 1)  // as flow_term takes it
+    for (int q = 0; q < rule.points; ++q)
+      for (int a = 0; a < cell_nodes(cell); ++a)
+        if (rule.points != cell_nodes(cell) || (a == q) != (table.N[q][a] > 0.5) ||
+            (a != q && std::abs(table.N[q][a] - table.N[q][q == 0]) > 1e-15))
+          throw std::logic_error("the points of a linear element must each stand by their own node");
   return table;
 }
 

@@ -31,6 +31,7 @@ struct FlowCoefficients {
   T returned[dim];      ///< N/m3, s grad p of the step before
   T viscosity;          ///< Pa s, with that of the turbulence
   T h;                  ///< m, shortest edge of the cell
+  bool loaded = true;   ///< false: load, response, following and returned are zero, and nobody looks at them
 };
 
 /// The unknowns at one point. `flux_divergence` is div(alpha u)_h, alpha u being interpolated from its nodal products,
@@ -80,14 +81,18 @@ struct VolumeAveragedNavierStokes {
       // The mean pressure gradient is tested like the pressure's own (row (a, i) gets -int w_a N_a m_i in the cell
       // loop), so that a static head balances it exactly.
       galerkin[i] = acceleration * mass - at.body[i];
-      if (k.model_a) galerkin[i] += state.pressure_gradient[i] * at.following - at.returned[i];
-      particles[i] = (state.velocity[i] - at.velocity_old[i]) * at.response - at.load[i];
-      strong[i] = galerkin[i] + particles[i] +
-                  (state.pressure_gradient[i] - T(T{} + k.mean_gradient[i])) * pressure_factor -
-                  thinning * at.grad_alpha[i];
+      particles[i] = S{};
+      strong[i] =
+          (state.pressure_gradient[i] - T(T{} + k.mean_gradient[i])) * pressure_factor - thinning * at.grad_alpha[i];
       for (int j = 0; j < dim; ++j)
         strong[i] -=
             (state.velocity_gradient[i][j] + state.velocity_gradient[j][i]) * T(at.grad_alpha[j] * at.viscosity);
+      if (at.loaded) {
+        if (k.model_a) galerkin[i] += state.pressure_gradient[i] * at.following - at.returned[i];
+        particles[i] = (state.velocity[i] - at.velocity_old[i]) * at.response - at.load[i];
+        strong[i] += particles[i];
+      }
+      strong[i] += galerkin[i];
     }
   }
 
@@ -117,7 +122,7 @@ struct VolumeAveragedNavierStokes {
     const S divergence = state.flux_divergence + at.alpha_rate;
     out.continuity = divergence * (T{} + k.continuity_scale);
     for (int j = 0; j < dim; ++j)
-      out.flux[j] = (state.velocity[j] - at.velocity_old[j]) * T(at.following * -k.continuity_scale);
+      out.flux[j] = at.loaded ? (state.velocity[j] - at.velocity_old[j]) * T(at.following * -k.continuity_scale) : S{};
     if (k.supg == 0 && k.pspg == 0 && k.grad_div == 0) return;
 
     S speed_squared = state.velocity[0] * state.velocity[0];
@@ -125,10 +130,11 @@ struct VolumeAveragedNavierStokes {
     const T per_length = 1.0 / at.h;
     const T convection = 2.0 * mass * per_length;
     const T diffusion = 12.0 * shear * (per_length * per_length);
-    const T inertia = mass * k.time_coefficient + at.response;
+    const T inertia = at.loaded ? mass * k.time_coefficient + at.response : mass * k.time_coefficient;
     const S steady = speed_squared * T(convection * convection) + T(diffusion * diffusion);
     const T one = T{} + 1.0;
-    const S tau_momentum = one / square_root(S(steady + T(at.response * at.response)));
+    const S root = square_root(steady);
+    const S tau_momentum = one / (at.loaded ? square_root(S(steady + T(at.response * at.response))) : root);
     const S tau_pressure = one / square_root(S(steady + T(inertia * inertia)));
     for (int j = 0; j < dim; ++j) {
       out.flux[j] += tau_pressure * strong[j] * T(at.alpha * (k.pspg * k.continuity_scale));
@@ -137,7 +143,7 @@ struct VolumeAveragedNavierStokes {
     }
     // Grad-div: h^2/4 times the convective part of 1/tau, alpha rho |u| h/2 where convection rules; nothing where
     // viscosity does, which needs no help and would lose accuracy.
-    const S bulk = (square_root(steady) - diffusion) * divergence * T(at.h * at.h * (0.25 * k.grad_div) / at.alpha);
+    const S bulk = (root - diffusion) * divergence * T(at.h * at.h * (0.25 * k.grad_div) * T(1.0 / at.alpha));
     for (int i = 0; i < dim; ++i) out.stress[i][i] += bulk;
   }
 };

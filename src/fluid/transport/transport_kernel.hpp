@@ -28,7 +28,7 @@ void assemble_transport(const TransportData& d, int first, int count, double* ma
     }
   }
   V K[n][n] = {}, r[n] = {};
-  FlowPoint<E, V> at;
+  FlowPoint<E, V> at(t, x);
   for (int q = 0; q < t.points; ++q) {
     at.move(t, q, x);
     double carried[dim][W];
