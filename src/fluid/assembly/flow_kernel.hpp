@@ -1,8 +1,7 @@
 #pragma once
 // Included only by the translation units that instantiate it for one instruction set each; everything here depends on
 // the lane type, so no code compiled for a newer machine can replace another's.
-#include "fluid/assembly/flow_batch.hpp"
-#include "fluid/equations/linearised_navier_stokes.hpp"
+#include "fluid/assembly/linear_jacobian.hpp"
 
 namespace silt {
 
@@ -125,9 +124,14 @@ template <class E, class V>
 
 template <class E, class V>
 void evaluate_matrix(const FlowData& data, const FlowBatch<E, V>& b, const V (&w)[E::NV], V (&K)[E::rows * E::rows]) {
-  at_points<E, V>(data, b, [&](int q, const FlowPoint<E, V>& at, const auto& s, const auto& k) {
-    add_jacobian<E, V>(b, w, at, *data.table, q, s, k, data.parameters, K);
-  });
+  if constexpr (E::linear) {
+    LinearJacobian<E, V>(data, b, w, K);
+  } else {
+    for (V& k : K) k = V{};
+    at_points<E, V>(data, b, [&](int q, const FlowPoint<E, V>& at, const auto& s, const auto& k) {
+      add_jacobian<E, V>(b, w, at, *data.table, q, s, k, data.parameters, K);
+    });
+  }
 }
 
 template <Cell C, int order, int W>
@@ -140,7 +144,6 @@ void evaluate_flow(const FlowData& data, int first, int count, double* residual,
   for (int a = 0; a < E::NV; ++a) w[a] = data.parameters.model_a ? b.alpha[a] : b.alpha[a] * 0.0 + 1.0;
   if (matrix) {
     V K[rows * rows];
-    for (V& k : K) k = V{};
     evaluate_matrix<E, V>(data, b, w, K);
     store_by_lane(K, rows * rows, matrix);
   } else {

@@ -21,6 +21,7 @@ struct LinearisedNavierStokes {
   V supg, time, response_galerkin, response;
   bool stabilised;
 
+  LinearisedNavierStokes() = default;
   LinearisedNavierStokes(const FlowState<V, dim>& s, const FlowCoefficients<V, dim>& at, const FlowParameters& k) {
     mass = at.alpha * k.density;
     shear = at.alpha * at.viscosity;
