@@ -6,10 +6,6 @@
 #include <unordered_map>
 
 namespace silt {
-namespace {
-constexpr int pad_to = 8;  // the widest pack
-}
-
 void ContactLists::reserve(int count) {
   const auto needed = static_cast<std::size_t>(count) + 2 * pad_to;
   if (needed <= stride_) return;
@@ -30,7 +26,7 @@ void ContactLists::make_room(int count) {
 }
 
 void ContactLists::clear() {
-  contacts_ = candidates_ = due_count_ = 0;
+  contacts_ = candidates_ = due_count_ = with_ghost_ = in_order_ = 0;
   open_page_ = 0;
   now_ = 0;
   // The next lists will be about as long, so that they need not grow.
@@ -135,8 +131,11 @@ void ContactLists::pad_contacts() {
   }
 }
 
-void ContactLists::pad(int padding) {
+void ContactLists::pad(int padding, int owned) {
   padding_ = padding;
+  owned_ = owned;
+  leaving();
+  bring_ghosts_forward();
   for (int k = 0; k < pages; ++k) {
     filed_[k] = page_[k].size();
     if (page_[k].capacity() > filed_[k] + filed_[k] / 8) page_[k].shrink_to_fit();
@@ -188,25 +187,53 @@ void ContactLists::look(CandidateSweep& sweep, double moved, double skin, void (
   if (contacts_ > before) pad_contacts();
 }
 
-unsigned char* ContactLists::leaving() {
-  leaving_.assign(contacts_ / 8 + 1, 0);
+unsigned char* ContactLists::leaving(bool more) {
+  if (!more) leaving_.clear();
+  leaving_.resize(contacts_ / 8 + 1, 0);
   return leaving_.data();
 }
 
+void ContactLists::copy(int from, int to) {
+  contact_i_[to] = contact_i_[from];
+  contact_j_[to] = contact_j_[from];
+  for (int c = 0; c < components_; ++c) history_[c * stride_ + to] = history_[c * stride_ + from];
+}
+
+void ContactLists::bring_ghosts_forward() {
+  make_room(contacts_);
+  for (int k = in_order_; k < contacts_; ++k) {
+    if (contact_i_[k] < owned_ && contact_j_[k] < owned_) continue;
+    const int to = with_ghost_++;
+    if (to == k) continue;
+    copy(k, contacts_);  // the padding is made anew
+    copy(to, k);
+    copy(contacts_, to);
+    const auto marked = [&](int place) { return leaving_[place / 8] >> place % 8 & 1; };
+    if (marked(k) != marked(to))
+      for (const int place : {k, to}) leaving_[place / 8] ^= static_cast<unsigned char>(1 << place % 8);
+  }
+  in_order_ = contacts_;
+}
+
 void ContactLists::leave(int count) {
-  if (count == 0) return;
-  // From the back, so that the last one moved in is never one of those to move.
+  const bool moved = in_order_ < contacts_;
+  bring_ghosts_forward();
+  if (count == 0 && !moved) return;
+  // From the back, so that those moved into a hole, the last of all and the last with a ghost, are never marked.
   for (int k = contacts_ - 1; count > 0; --k) {
     if (leaving_[k / 8] == 0) k &= ~7;
     if (!(leaving_[k / 8] >> k % 8 & 1)) continue;
     --count;
     add_due(contact_i_[k], contact_j_[k]);
     ++candidates_;
-    --contacts_;
-    contact_i_[k] = contact_i_[contacts_];
-    contact_j_[k] = contact_j_[contacts_];
-    for (int c = 0; c < components_; ++c) history_[c * stride_ + k] = history_[c * stride_ + contacts_];
+    int hole = k;
+    if (hole < with_ghost_) {
+      copy(--with_ghost_, hole);
+      hole = with_ghost_;
+    }
+    copy(--contacts_, hole);
   }
+  in_order_ = contacts_;
   pad_contacts();
 }
 

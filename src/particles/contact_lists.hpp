@@ -65,17 +65,23 @@ class ContactLists {
   /// With the history it had, or null for a new contact.
   void add_contact(int i, int j, const double* history, std::size_t history_step);
 
-  /// From now on the lists are padded to whole packs with the pair (padding, padding + 1).
-  void pad(int padding);
+  /// From now on the lists are padded to whole packs with the pair (padding, padding + 1), and contacts with a ghost, a
+  /// particle from number `owned` on, stand first.
+  void pad(int padding, int owned);
   PairArrays pairs();
+  /// The first pack of contacts without a ghost.
+  int first_inner() const { return (with_ghost_ + pad_to - 1) / pad_to * pad_to; }
+  /// The end of the packs that are full.
+  int last_full() const { return contacts_ / pad_to * pad_to; }
   /// Looks at the candidates that may touch once the fastest particles have come `moved` skins since the lists were
   /// made (steps added up): `measure` gives their gaps; those with gaps below 0 become contacts, the others are filed
   /// by them. `sweep`: all but the pairs.
   void look(CandidateSweep& sweep, double moved, double skin, void (*measure)(CandidateSweep&));
   int looked_at() const { return looked_at_; }  ///< pairs, in the last look()
-  /// A bit for each contact, all clear, for the sweep to mark those that ended.
-  unsigned char* leaving();
-  /// Moves the marked contacts, `count` of them, to the candidates.
+  /// A bit for each contact, for the sweep to mark those that ended; `more`: new contacts have come since the last
+  /// call, whose marks stay, otherwise all are clear.
+  unsigned char* leaving(bool more = false);
+  /// Moves the marked contacts, `count` of them, to the candidates, and the new ones with a ghost to the first.
   void leave(int count);
   /// Memory by array, as counted by its containers. B
   std::size_t contact_bytes() const;
@@ -88,7 +94,11 @@ class ContactLists {
   /// The calendar has pages of equal time; it goes round, so that no pair may be filed further ahead than a round.
   static constexpr int pages_a_skin = 32, pages = 64;
 
+  static constexpr int pad_to = 8;  ///< the widest pack
   void make_room(int count);
+  /// Contact `to` becomes what contact `from` is.
+  void copy(int from, int to);
+  void bring_ghosts_forward();
   void pad_contacts();
   void file(int i, int j, double due) {
     const auto page = static_cast<long long>(due);
@@ -97,7 +107,9 @@ class ContactLists {
   }
   void add_due(int i, int j);
 
-  int components_, contacts_ = 0, candidates_ = 0, padding_ = 0;
+  int components_, contacts_ = 0, candidates_ = 0, padding_ = 0, owned_ = 0;
+  int with_ghost_ = 0;  ///< contacts with a ghost among those in order, the first
+  int in_order_ = 0;    ///< contacts that stand in order, before those that have come since the last leave()
   std::size_t stride_ = 0;
   Aligned<int> contact_i_, contact_j_;
   Aligned<double> history_;  ///< [components][stride]

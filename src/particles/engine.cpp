@@ -42,6 +42,7 @@ Engine::Engine(const Mesh& on_mesh, Options& options, const Vec3& gravity, bool 
       streams_(walls_, options, materials, names_of(materials)),
       migration_(on_mesh, communicator_),
       halo_(communicator_),
+      news_(communicator_),
       kernels_(choose_kernels(options_.instructions.c_str())),
       gravity_(gravity),
       plane_(options_.plane || on_mesh.dimension == 2),
@@ -262,7 +263,6 @@ ParticleStep Engine::advance(double time, double dt) {
   prepare_fluid(h);
   sum_up();
   if (energy_) energy_->begin(store);
-  const bool alone = mpi_size() == 1;
   const double late = options_.late_share(), early = 1 - late;
   trouble_.clear();
   static const PetscLogEvent event = log_event("SiltSubsteps");
@@ -277,12 +277,13 @@ ParticleStep Engine::advance(double time, double dt) {
     step.drift = true;
     want_turns(step);
     kernels_.integrate(step);
-    strode_ = std::sqrt(step.largest_square);
-    double way = strode_, farthest = travel_ + strode_;
+    hear();
+    strode_ = way_ = std::sqrt(step.largest_square);
+    double farthest = travel_ + strode_;
     if (brownian_.active() && fluid_) {
       const BrownianWay noise = brownian_.act(store, step, time + (s + 1) * h);
       farthest = noise.from_lists;
-      way += noise.jump;
+      way_ += noise.jump;
     }
     if (step.turned)
       for (const auto& field : fields_) field->turn(store, step.turned);
@@ -294,18 +295,10 @@ ParticleStep Engine::advance(double time, double dt) {
     move_walls(time + s * h, h);
     strode_ += std::max(0.0, walls_.moved() - walls_before);
     ++steps_since_rebuild_;
-    // Whether anything is wrong, whether a wall has left its list, how far any particle may have come, and how far in
-    // this step, particles alone and against walls.
-    double state[5] = {double(!trouble_.empty()), double(walls_.moved() > 0.5 * skin_), farthest, way, strode_};
-    if (!alone) MPI_Allreduce(MPI_IN_PLACE, state, 5, MPI_DOUBLE, MPI_MAX, communicator_);
-    travel_ = state[2];
-    path_ += state[3];
-    strode_ = state[4];
-    if (state[0] > 0) stop_if_any(trouble_);
-    if (state[1] > 0 || out_of_lists())
+    if (agree_on_lists(farthest))
       rebuild(store.previous, true, h);
     else
-      halo_.begin(store);  // evaluate() waits for them
+      halo_.begin(store, way_);  // evaluate() waits for them
     const Vec3 before = wall_total_, drawn = field_total_;
     add_wall_impulses(early * h);
     evaluate(time + (s + 1) * h, h);
@@ -319,6 +312,7 @@ ParticleStep Engine::advance(double time, double dt) {
     }
     if (heat_) heat_->advance(store, contacts, wall_contacts, walls_, periods_, time + (s + 1) * h, h);
   }
+  hear();
   if (!energy_) correct(h);
   logged.reset();
   collect_fluid();

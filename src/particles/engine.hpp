@@ -18,6 +18,7 @@
 #include "particles/packed_state.hpp"
 #include "particles/particle_options.hpp"
 #include "particles/particles.hpp"
+#include "particles/step_news.hpp"
 #include "particles/store.hpp"
 #include "particles/time_step.hpp"
 #include "particles/wall_contacts.hpp"
@@ -117,9 +118,16 @@ class Engine {
   void rebuild(Aligned<Load>& carried, bool within_step, double h);
   CellOrder sort_along(const CellGrid& grid, Aligned<Load>& carried);
   bool out_of_lists();
+  /// Tells the other ranks of the substep, in which a particle may have come `farthest` from where the lists were made;
+  /// whether the lists must be made anew.
+  bool agree_on_lists(double farthest);
+  /// Takes what the ranks told of a substep, if it was not heard yet. Throws RunError where something is wrong.
+  void hear();
   void adapt_skin();
   void depart(const std::vector<Gone>& gone, bool within_step, double h);
   void evaluate(double time, double dt);
+  /// The contacts `from` to `to`; whole packs, but for the last. Returns how many ended.
+  int sweep_contacts(PairSweep& sweep, int from, int to);
   void note_loaded();
   /// Takes the work of the step that evaluate() ended, and lets go of the contacts that ended with it.
   void account(double h);
@@ -169,6 +177,7 @@ class Engine {
   bool advanced_ = false;            ///< the run is past its first step
   Migration migration_;
   Halo halo_;
+  StepNews news_;
   const Kernels& kernels_;
   Vec3 gravity_;
   bool plane_;
@@ -180,12 +189,15 @@ class Engine {
   std::unique_ptr<EnergyLedger> energy_;
   Periods periods_;
   double skin_ = 0, largest_radius_ = 0;
-  double travel_ = 0;  ///< m, no particle of any rank is further from where the lists were made
-  double path_ = 0;    ///< m, sum of the longest ways of a particle of any rank in each step since then
+  double travel_ = 0;         ///< m, no particle of any rank is further from where the lists were made
+  double wall_travel_ = 0;    ///< m, the same for walls
+  double stride_ = infinity;  ///< m, the longest way of a particle or a wall of any rank in the last step heard of
+  double path_ = 0;           ///< m, sum of the longest ways of a particle or ghost in each step since then
+  double way_ = 0;            ///< m, longest way of a particle in the step, not yet in the path
   // Which particles the last evaluation may have loaded, and the one before it, where it was worth noting.
   bool few_loaded_ = false, few_loaded_before_ = false;
   std::vector<unsigned char> loaded_, loaded_before_;
-  double strode_ = 0;  ///< m, longest way of a particle, and of a wall, in the last step
+  double strode_ = 0;  ///< m, longest way of this rank's particles, and of a wall, in the last step
   int steps_since_rebuild_ = 0;
   SmallestRadii smallest_;
   std::int64_t next_id_ = 0;

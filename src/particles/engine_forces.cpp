@@ -32,9 +32,34 @@ void Engine::evaluate(double time, double dt) {
   const LawSetup& setup = laws_.setup();
   // Walls need no ghosts, which are under way meanwhile. A wall that has been left in this step is looked at once more
   // where a law's force ends with a jump.
+  if (!trouble_.empty()) {  // the ranks have not heard of it yet
+    halo_.finish(store);
+    return;
+  }
   walls_.points(store.motion.data(), time, wall_contacts.next(), setup.jumping ? strode_ : 0);
   wall_contacts.adopt(store.motion.data(), setup.leave_gap);
-  halo_.finish(store);
+
+  PairSweep sweep;
+  sweep.motion = store.motion.data();
+  sweep.rotation = store.rotation.data();
+  sweep.load = store.present.data();
+  sweep.laws = setup;
+  sweep.periods = periods_;
+  sweep.dt = dt;
+  sweep.deepest_share = options_.overlap_limit;
+  sweep.scattered = contacts.contacts() < store.owned / 2;
+  sweep.leaving = contacts.leaving();
+  // So do contacts without a ghost, unless somebody must know of new ones first.
+  const int inner = contacts.first_inner();
+  const int swept = halo_.under_way() && !energy_ && !liquid_.active() ? std::max(inner, contacts.last_full()) : inner;
+  constexpr int at_once = 16384;
+  leaving_count_ = 0;
+  for (int from = inner; from < swept; from += at_once) {
+    leaving_count_ += sweep_contacts(sweep, from, std::min(from + at_once, swept));
+    halo_.poke();
+  }
+  path_ += std::max(way_, halo_.finish(store));
+  way_ = 0;
 
   CandidateSweep search;
   search.motion = store.motion.data();
@@ -44,23 +69,15 @@ void Engine::evaluate(double time, double dt) {
 
   liquid_.exchange(store, contacts, wall_contacts, periods_, dt);
 
-  PairSweep sweep;
-  sweep.motion = store.motion.data();
-  sweep.rotation = store.rotation.data();
-  sweep.load = store.present.data();
-  sweep.pairs = contacts.pairs();
-  sweep.laws = setup;
-  sweep.periods = periods_;
-  sweep.dt = dt;
-  sweep.deepest_share = options_.overlap_limit;
-  sweep.leaving = contacts.leaving();
-  sweep.scattered = contacts.contacts() < store.owned / 2;
-  if (energy_) energy_->trace(sweep);
-  kernels_.pairs(sweep);
-  if (sweep.too_deep >= 0) report(options_.deep, describe_deepest(sweep.too_deep));
+  sweep.leaving = contacts.leaving(true);
+  if (energy_) {
+    sweep.pairs = contacts.pairs();
+    energy_->trace(sweep);
+  }
+  leaving_count_ += sweep_contacts(sweep, 0, inner);
+  leaving_count_ += sweep_contacts(sweep, swept, contacts.contacts());
   note_loaded();
-  if (!energy_) contacts.leave(sweep.leaving_count);
-  leaving_count_ = sweep.leaving_count;
+  if (!energy_) contacts.leave(leaving_count_);
 
   std::fill(wall_force_sum_.begin(), wall_force_sum_.end(), 0.0);
   std::fill(wall_torque_sum_.begin(), wall_torque_sum_.end(), 0.0);
@@ -93,6 +110,15 @@ void Engine::evaluate(double time, double dt) {
                  describe(point.particle)));
   }
   if (!fields_.empty()) act_fields(time, dt);
+}
+
+int Engine::sweep_contacts(PairSweep& sweep, int from, int to) {
+  sweep.pairs = contacts.pairs();
+  sweep.first = from;
+  sweep.pairs.count = std::min(to, sweep.pairs.count);
+  kernels_.pairs(sweep);
+  if (sweep.too_deep >= 0) report(options_.deep, describe_deepest(sweep.too_deep));
+  return sweep.leaving_count;
 }
 
 /// Where few particles touch anything, the others' loads, which are zero, need not pass through the processor.

@@ -66,9 +66,10 @@ void Engine::rebuild(Aligned<Load>& carried, bool within_step, double h) {
   contacts.reserve(contacts_before + contacts_before / 32);
   find_pairs(grid, own, store, periods_, {laws_.setup().enter_gap, gap, skin_, once_more ? gap + skin_ : gap}, memory_,
              kernels_, contacts);
-  travel_ = path_ = 0;
+  travel_ = wall_travel_ = path_ = way_ = 0;
+  if (!within_step) stride_ = infinity;  // who knows what has happened
   steps_since_rebuild_ = 0;
-  contacts.pad(store.padding());
+  contacts.pad(store.padding(), store.owned);
   wall_contacts.restore(wall_memory_);
   memory_.rows.release();
   wall_memory_.release();
@@ -102,6 +103,29 @@ CellOrder Engine::sort_along(const CellGrid& grid, Aligned<Load>& carried) {
     std::iota(order.begin(), order.end(), 0);
   }
   return sorted;
+}
+
+void Engine::hear() {
+  if (!news_.told()) return;
+  const StepNews::Numbers& news = news_.hear();
+  travel_ = news.farthest;
+  wall_travel_ = news.walls;
+  stride_ = news.stride;
+  if (news.trouble > 0) stop_if_any(trouble_);
+}
+
+/// Far from where the lists end, what the ranks tell each other is heard in the next step, and meanwhile one may be
+/// ahead of another by nearly a step: their steps differ by some percent, and in each they would wait for the slower
+/// one. A particle would have to come a tenth of the skin further in a step than ever before for the lists to end
+/// unnoticed.
+bool Engine::agree_on_lists(double farthest) {
+  const double come = std::max(travel_, wall_travel_), margin = std::max(0.1 * skin_, 2 * stride_);
+  const bool each_for_itself = mpi_size() > 1 && fields_.empty() && !heat_ && !energy_ && !liquid_.active() &&
+                               !brownian_.active() && come + margin < 0.5 * skin_;
+  news_.tell({double(!trouble_.empty()), walls_.moved(), farthest, strode_}, !each_for_itself);
+  if (each_for_itself) return false;
+  hear();
+  return wall_travel_ > 0.5 * skin_ || out_of_lists();
 }
 
 /// The bound on how far particles have come grows with the fastest of each step; before the lists are made anew, the

@@ -40,7 +40,7 @@ void Engine::heat_held(double time, double dt) {
     longest = std::min(longest, options_.step_fraction * heat_->conduction_time(smallest_.radius[m], m));
   const int steps = static_cast<int>(std::ceil(dt / longest * (1 - 1e-12)));
   for (int s = 0; s < steps; ++s) {
-    halo_.begin(store);
+    halo_.begin(store, 0);
     halo_.finish(store);
     heat_->advance(store, contacts, wall_contacts, walls_, periods_, time + (s + 1) * dt / steps, dt / steps);
   }

@@ -164,7 +164,7 @@ void Halo::fetch(Store& store) {
   }
 }
 
-void Halo::begin(const Store& store) {
+void Halo::begin(const Store& store, double way) {
   static const PetscLogEvent event = log_event("SiltGhosts");  // on every rank, in the same order
   if (send_rank_.empty() && receive_rank_.empty()) return;
   const Logged logged(event);
@@ -173,16 +173,16 @@ void Halo::begin(const Store& store) {
   const int last = static_cast<int>(send_index_.size()) - 1;
   requests_.clear();
   for (std::size_t n = 0; n < receive_rank_.size(); ++n)
-    MPI_Irecv(&receive_buffer_[static_cast<std::size_t>(receive_start_[n]) * width],
-              (receive_start_[n + 1] - receive_start_[n]) * width, MPI_DOUBLE, receive_rank_[n], tag + 4, communicator_,
-              &requests_.emplace_back());
+    MPI_Irecv(&receive_buffer_[place(receive_start_[n], n, width)],
+              (receive_start_[n + 1] - receive_start_[n]) * width + 1, MPI_DOUBLE, receive_rank_[n], tag + 4,
+              communicator_, &requests_.emplace_back());
   for (std::size_t n = 0; n < send_rank_.size(); ++n) {
-    for (int k = send_start_[n]; k < send_start_[n + 1]; ++k) {
+    double* record = &send_buffer_[place(send_start_[n], n, width)];
+    for (int k = send_start_[n]; k < send_start_[n + 1]; ++k, record += width) {
       const int coming = send_index_[std::min(k + ahead, last)];
       __builtin_prefetch(&store.motion[coming]);
       __builtin_prefetch(&store.rotation[coming]);
       const Motion& motion = store.motion[send_index_[k]];
-      double* record = &send_buffer_[static_cast<std::size_t>(k) * width];
       for (int d = 0; d < 3; ++d) {
         record[d] = motion.position[d];
         record[3 + d] = motion.velocity[d];
@@ -190,30 +190,40 @@ void Halo::begin(const Store& store) {
       }
       if (width > motion_width_) store.columns.gather_ghost(send_index_[k], false, record + motion_width_);
     }
-    MPI_Isend(&send_buffer_[static_cast<std::size_t>(send_start_[n]) * width],
-              (send_start_[n + 1] - send_start_[n]) * width, MPI_DOUBLE, send_rank_[n], tag + 4, communicator_,
-              &requests_.emplace_back());
+    *record = way;
+    MPI_Isend(&send_buffer_[place(send_start_[n], n, width)], (send_start_[n + 1] - send_start_[n]) * width + 1,
+              MPI_DOUBLE, send_rank_[n], tag + 4, communicator_, &requests_.emplace_back());
   }
 }
 
-void Halo::finish(Store& store) {
+void Halo::poke() {
+  int done;
+  MPI_Testall(static_cast<int>(requests_.size()), requests_.data(), &done, MPI_STATUSES_IGNORE);
+}
+
+double Halo::finish(Store& store) {
   static const PetscLogEvent event = log_event("SiltGhostsEnd");
-  if (requests_.empty()) return;
+  if (requests_.empty()) return 0;
   const Logged logged(event);
   const int width = motion_width_ + store.columns.ghost_width(false);
   MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
   requests_.clear();
-  for (int k = 0; k < store.ghosts; ++k) {
-    const double* record = &receive_buffer_[static_cast<std::size_t>(k) * width];
-    Motion& motion = store.motion[store.owned + k];
-    for (int d = 0; d < 3; ++d) {
-      motion.position[d] = record[d];
-      motion.velocity[d] = record[3 + d];
-      store.rotation[store.owned + k].spin[d] = record[6 + d];
+  double way = 0;
+  for (std::size_t n = 0; n < receive_rank_.size(); ++n) {
+    const double* record = &receive_buffer_[place(receive_start_[n], n, width)];
+    for (int k = store.owned + receive_start_[n]; k < store.owned + receive_start_[n + 1]; ++k, record += width) {
+      Motion& motion = store.motion[k];
+      for (int d = 0; d < 3; ++d) {
+        motion.position[d] = record[d];
+        motion.velocity[d] = record[3 + d];
+        store.rotation[k].spin[d] = record[6 + d];
+      }
+      if (width > motion_width_) store.columns.scatter_ghost(k, false, record + motion_width_);
+      store.present[k] = Load{};  // sums up forces that their owner computes too
     }
-    if (width > motion_width_) store.columns.scatter_ghost(store.owned + k, false, record + motion_width_);
-    store.present[store.owned + k] = Load{};  // sums up forces that their owner computes too
+    way = std::max(way, *record);
   }
+  return way;
 }
 
 }  // namespace silt

@@ -31,7 +31,7 @@ class LedPair {
     store_.place_padding();
     const std::vector<double> history(laws.history_components() + 1, 0.0);
     lists_.add_contact(0, 1, history.data(), 1);
-    lists_.pad(store_.padding());
+    lists_.pad(store_.padding(), store_.owned);
   }
 
   /// Load on the one particle after a step: it is above the other by the gap, nears it with the speed `approach`, slips

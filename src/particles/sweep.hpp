@@ -57,6 +57,7 @@ struct PairSweep {
   const Rotation* rotation = nullptr;
   Load* load = nullptr;
   PairArrays pairs;
+  int first = 0;  ///< where among them to begin, at a whole pack
   LawSetup laws;
   Periods periods;
   double dt = 0;

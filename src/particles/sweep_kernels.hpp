@@ -221,7 +221,7 @@ void pair_blocks(PairSweep& sweep) {
   block.dt = sweep.dt;
   const Laws laws(sweep.laws);
   const PairArrays& pairs = sweep.pairs;
-  for (int first = 0; first < pairs.count; first += block_size) {
+  for (int first = sweep.first; first < pairs.count; first += block_size) {
     const int left = (pairs.count - first + 7) / 8 * 8;  // the lists are padded to 8
     const int count = left < block_size ? left : block_size;
     pair_kinematics<periodic, extended, several>(sweep, block, first, count);

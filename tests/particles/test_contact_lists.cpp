@@ -22,16 +22,16 @@ void measure(CandidateSweep& sweep) {
 
 TEST_CASE("Every candidate that may touch is tested, whatever pairs begin and end in between, and far ones are not") {
   Random random(3);
-  ContactLists lists(0);
+  ContactLists lists(1);
   constexpr double skin = 1e-3;
-  constexpr int count = 1500;
+  constexpr int count = 1500, owned = 1300;  // the others are ghosts
   gaps.resize(count);
   std::set<int> touching;
   for (int n = 0; n < count; ++n) {
     gaps[n] = random(0, 1.2) * skin;
     lists.add_candidate(n, n + 1, gaps[n] / skin);
   }
-  lists.pad(count + 2);
+  lists.pad(count + 2, owned);
   double moved = 0;
   long long looked_at = 0;
   for (int step = 0; step < 400; ++step) {
@@ -52,6 +52,11 @@ TEST_CASE("Every candidate that may touch is tested, whatever pairs begin and en
     std::set<int> there;
     for (int k = 0; k < lists.contacts(); ++k) there.insert(lists.contact_i()[k]);
     REQUIRE(there == touching);
+    for (int k = 0; k < lists.contacts(); ++k) {  // each keeps its memory wherever it is moved to
+      double& memory = lists.history(0, k);
+      if (memory == 0) memory = lists.contact_i()[k] + 1;
+      REQUIRE(memory == lists.contact_i()[k] + 1);
+    }
     unsigned char* leaving = lists.leaving();
     int ended = 0;
     for (int k = 0; k < lists.contacts(); ++k)
@@ -65,6 +70,11 @@ TEST_CASE("Every candidate that may touch is tested, whatever pairs begin and en
     for (int k = 0; k < lists.contacts(); ++k) there.insert(lists.contact_i()[k]);
     REQUIRE(there == touching);
     REQUIRE(lists.candidates() == count - static_cast<int>(touching.size()));
+    // Those with a ghost stand first, in as few packs as hold them.
+    int with_ghost = 0;
+    for (int k = 0; k < lists.contacts(); ++k) with_ghost += lists.contact_j()[k] >= owned;
+    REQUIRE(lists.first_inner() == (with_ghost + 7) / 8 * 8);
+    for (int k = lists.first_inner(); k < lists.contacts(); ++k) REQUIRE(lists.contact_j()[k] < owned);
   }
   CHECK(looked_at < 0.2 * 400 * count);
 }

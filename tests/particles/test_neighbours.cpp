@@ -76,7 +76,7 @@ TEST_CASE("The lists hold every pair nearer than the reach, once, and no other, 
       const Kernels& kernels = choose_kernels(instructions);
       lists.clear();
       find_pairs(grid, own, store, periods, {all, gap, skin, 0}, memory, kernels, lists);
-      lists.pad(store.padding());
+      lists.pad(store.padding(), store.owned);
       CandidateSweep sweep;
       sweep.motion = store.motion.data();
       sweep.periods = periods;

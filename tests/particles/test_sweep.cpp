@@ -56,7 +56,7 @@ void compare(const LawCase& setup, const char* instructions, bool several, unsig
     for (double& h : history[k]) h = random(-1e-6, 1e-6);
     lists.add_contact(2 * k, 2 * k + 1, history[k].data(), 1);
   }
-  lists.pad(store.padding());
+  lists.pad(store.padding(), store.owned);
   PairSweep sweep;
   sweep.motion = store.motion.data();
   sweep.rotation = store.rotation.data();
