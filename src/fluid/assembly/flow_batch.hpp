@@ -1,6 +1,8 @@
 #pragma once
 // The parts of a cell loop that gather and interpolate, one cell a lane. As flow_kernel.hpp: everything here depends on
 // the lane type.
+#include <utility>
+
 #include "fluid/assembly/flow_data.hpp"
 #include "fluid/assembly/flow_table.hpp"
 #include "fluid/assembly/inverse.hpp"
@@ -38,26 +40,23 @@ template <class V>
     return V{r[0][k], r[1][k], r[2][k], r[3][k], r[4][k], r[5][k], r[6][k], r[7][k]};
 }
 
-template <int W>
-struct LaneIndices {
-  typedef long type __attribute__((vector_size(W * sizeof(long))));
-};
+/// Of two vectors whose numbers differ by `stage`: the first, or (`high`) the second, after the exchange of lanes.
+template <int stage, bool high, class V, std::size_t... lane>
+[[gnu::always_inline]] inline V exchanged(const V& a, const V& b, std::index_sequence<lane...>) {
+  return __builtin_shufflevector(
+      a, b, (lane & stage ? sizeof...(lane) + lane - (high ? 0 : stage) : lane + (high ? stage : 0))...);
+}
 
 /// Swaps the lanes of W vectors that differ in one bit of their number: log2(W) such stages transpose a square.
 template <int stage, class V>
 [[gnu::always_inline]] inline void exchange_lanes(V* v) {
   constexpr int W = sizeof(V) / sizeof(double);
-  using Index = typename LaneIndices<W>::type;
-  Index low{}, high{};
-  for (int l = 0; l < W; ++l) {
-    low[l] = l & stage ? W + l - stage : l;
-    high[l] = l & stage ? W + l : l + stage;
-  }
+  const std::make_index_sequence<W> lanes;
   for (int i = 0; i < W; ++i)
     if (!(i & stage)) {
       const V a = v[i], b = v[i + stage];
-      v[i] = __builtin_shuffle(a, b, low);
-      v[i + stage] = __builtin_shuffle(a, b, high);
+      v[i] = exchanged<stage, false>(a, b, lanes);
+      v[i + stage] = exchanged<stage, true>(a, b, lanes);
     }
 }
 
