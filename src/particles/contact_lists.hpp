@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <vector>
@@ -113,7 +114,7 @@ class ContactLists {
   std::size_t stride_ = 0;
   Aligned<int> contact_i_, contact_j_;
   Aligned<double> history_;  ///< [components][stride]
-  std::vector<Pair> page_[pages];
+  std::array<std::vector<Pair>, pages> page_;
   std::size_t filed_[pages] = {};  ///< pairs of each page when the lists had been made
   long long open_page_ = 0;        ///< all up to this are in the due list
   double now_ = 0;                 ///< in pages

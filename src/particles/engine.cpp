@@ -24,6 +24,7 @@ T read(Options& options, const char* prefix) {
 
 std::vector<std::string> names_of(const Materials& materials) {
   std::vector<std::string> names;
+  names.reserve(materials.count());
   for (int m = 0; m < materials.count(); ++m) names.push_back(materials[m].name);
   return names;
 }

@@ -126,6 +126,8 @@ class Engine {
   void adapt_skin();
   void depart(const std::vector<Gone>& gone, bool within_step, double h);
   void evaluate(double time, double dt);
+  /// The particles' forces on each other, in evaluate(): waits for the ghosts.
+  void act_contacts(double dt);
   /// The contacts `from` to `to`; whole packs, but for the last. Returns how many ended.
   int sweep_contacts(PairSweep& sweep, int from, int to);
   void note_loaded();

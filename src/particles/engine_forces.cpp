@@ -30,54 +30,15 @@ void Engine::want_turns(Integration& step) {
 
 void Engine::evaluate(double time, double dt) {
   const LawSetup& setup = laws_.setup();
-  // Walls need no ghosts, which are under way meanwhile. A wall that has been left in this step is looked at once more
-  // where a law's force ends with a jump.
   if (!trouble_.empty()) {  // the ranks have not heard of it yet
     halo_.finish(store);
     return;
   }
+  // Walls need no ghosts, which are under way meanwhile. A wall that has been left in this step is looked at once more
+  // where a law's force ends with a jump.
   walls_.points(store.motion.data(), time, wall_contacts.next(), setup.jumping ? strode_ : 0);
   wall_contacts.adopt(store.motion.data(), setup.leave_gap);
-
-  PairSweep sweep;
-  sweep.motion = store.motion.data();
-  sweep.rotation = store.rotation.data();
-  sweep.load = store.present.data();
-  sweep.laws = setup;
-  sweep.periods = periods_;
-  sweep.dt = dt;
-  sweep.deepest_share = options_.overlap_limit;
-  sweep.scattered = contacts.contacts() < store.owned / 2;
-  sweep.leaving = contacts.leaving();
-  // So do contacts without a ghost, unless somebody must know of new ones first.
-  const int inner = contacts.first_inner();
-  const int swept = halo_.under_way() && !energy_ && !liquid_.active() ? std::max(inner, contacts.last_full()) : inner;
-  constexpr int at_once = 16384;
-  leaving_count_ = 0;
-  for (int from = inner; from < swept; from += at_once) {
-    leaving_count_ += sweep_contacts(sweep, from, std::min(from + at_once, swept));
-    halo_.poke();
-  }
-  path_ += std::max(way_, halo_.finish(store));
-  way_ = 0;
-
-  CandidateSweep search;
-  search.motion = store.motion.data();
-  search.periods = periods_;
-  search.enter_gap = setup.enter_gap;
-  contacts.look(search, path_ / skin_, skin_, kernels_.candidates);
-
-  liquid_.exchange(store, contacts, wall_contacts, periods_, dt);
-
-  sweep.leaving = contacts.leaving(true);
-  if (energy_) {
-    sweep.pairs = contacts.pairs();
-    energy_->trace(sweep);
-  }
-  leaving_count_ += sweep_contacts(sweep, 0, inner);
-  leaving_count_ += sweep_contacts(sweep, swept, contacts.contacts());
-  note_loaded();
-  if (!energy_) contacts.leave(leaving_count_);
+  act_contacts(dt);
 
   std::fill(wall_force_sum_.begin(), wall_force_sum_.end(), 0.0);
   std::fill(wall_torque_sum_.begin(), wall_torque_sum_.end(), 0.0);
@@ -110,6 +71,49 @@ void Engine::evaluate(double time, double dt) {
                  describe(point.particle)));
   }
   if (!fields_.empty()) act_fields(time, dt);
+}
+
+void Engine::act_contacts(double dt) {
+  const LawSetup& setup = laws_.setup();
+  PairSweep sweep;
+  sweep.motion = store.motion.data();
+  sweep.rotation = store.rotation.data();
+  sweep.load = store.present.data();
+  sweep.laws = setup;
+  sweep.periods = periods_;
+  sweep.dt = dt;
+  sweep.deepest_share = options_.overlap_limit;
+  sweep.scattered = contacts.contacts() < store.owned / 2;
+  sweep.leaving = contacts.leaving();
+  // Contacts without a ghost are computed while ghosts are under way, unless somebody must know of new ones first.
+  const int inner = contacts.first_inner();
+  const int swept = halo_.under_way() && !energy_ && !liquid_.active() ? std::max(inner, contacts.last_full()) : inner;
+  constexpr int at_once = 16384;
+  leaving_count_ = 0;
+  for (int from = inner; from < swept; from += at_once) {
+    leaving_count_ += sweep_contacts(sweep, from, std::min(from + at_once, swept));
+    halo_.poke();
+  }
+  path_ += std::max(way_, halo_.finish(store));
+  way_ = 0;
+
+  CandidateSweep search;
+  search.motion = store.motion.data();
+  search.periods = periods_;
+  search.enter_gap = setup.enter_gap;
+  contacts.look(search, path_ / skin_, skin_, kernels_.candidates);
+
+  liquid_.exchange(store, contacts, wall_contacts, periods_, dt);
+
+  sweep.leaving = contacts.leaving(true);
+  if (energy_) {
+    sweep.pairs = contacts.pairs();
+    energy_->trace(sweep);
+  }
+  leaving_count_ += sweep_contacts(sweep, 0, inner);
+  leaving_count_ += sweep_contacts(sweep, swept, contacts.contacts());
+  note_loaded();
+  if (!energy_) contacts.leave(leaving_count_);
 }
 
 int Engine::sweep_contacts(PairSweep& sweep, int from, int to) {

@@ -23,6 +23,8 @@ struct FlowElement {
   static constexpr bool simplex = C == Cell::triangle || C == Cell::tetrahedron;
   static constexpr bool equal_order = order == 1;
   static constexpr bool linear = simplex && equal_order;  ///< the gradients of all functions are constant in a cell
+  /// Terms of a value at a point (flow_term).
+  static constexpr int velocity_terms = linear ? 2 : NV, vertex_terms = linear ? 2 : NP;
   static constexpr int velocity_row(int a, int i) { return order == 1 ? a * (dim + 1) + i : a * dim + i; }
   static constexpr int pressure_row(int a) { return order == 1 ? a * (dim + 1) + dim : NV * dim + a; }
 };
@@ -276,10 +278,10 @@ void interpolate_gradients(const FlowBatch<E, V>& b, const FlowPoint<E, V>& at, 
 template <class E, class V>
 void interpolate_values(const FlowBatch<E, V>& b, const FlowPoint<E, V>& at, const FlowTable& t, int q,
                         FlowState<V, E::dim>& s, FlowCoefficients<V, E::dim>& k) {
-  constexpr int dim = E::dim, terms = E::linear ? 2 : E::NV, vertex_terms = E::linear ? 2 : E::NP;
+  constexpr int dim = E::dim;
   s.pressure = k.alpha = k.alpha_rate = V{};
   for (int i = 0; i < dim; ++i) s.velocity[i] = k.history[i] = V{};
-  for (int m = 0; m < terms; ++m) {
+  for (int m = 0; m < E::velocity_terms; ++m) {
     const auto [a, N] = flow_term<E>(t.N[q], q, m);
     k.alpha += b.alpha[a] * N;
     for (int i = 0; i < dim; ++i) {
@@ -287,14 +289,14 @@ void interpolate_values(const FlowBatch<E, V>& b, const FlowPoint<E, V>& at, con
       k.history[i] += b.history[a][i] * N;
     }
   }
-  for (int m = 0; m < vertex_terms; ++m) {
+  for (int m = 0; m < E::vertex_terms; ++m) {
     const auto [a, M] = flow_term<E>(t.M[q], q, m);
     s.pressure += b.p[a] * M;
     k.alpha_rate += b.rate[a] * M;
   }
   if (b.forced) {
     for (int i = 0; i < dim; ++i) k.body[i] = V{};
-    for (int m = 0; m < terms; ++m) {
+    for (int m = 0; m < E::velocity_terms; ++m) {
       const auto [a, N] = flow_term<E>(t.N[q], q, m);
       for (int i = 0; i < dim; ++i) k.body[i] += b.body[a][i] * N;
     }
@@ -303,11 +305,11 @@ void interpolate_values(const FlowBatch<E, V>& b, const FlowPoint<E, V>& at, con
   V lent{};
   k.response = k.following = V{};
   for (int i = 0; i < dim; ++i) k.velocity_old[i] = k.load[i] = k.returned[i] = V{};
-  for (int m = 0; m < terms; ++m) {
+  for (int m = 0; m < E::velocity_terms; ++m) {
     const auto [a, N] = flow_term<E>(t.N[q], q, m);
     for (int i = 0; i < dim; ++i) k.velocity_old[i] += b.old[a][i] * N;
   }
-  for (int m = 0; m < vertex_terms; ++m) {
+  for (int m = 0; m < E::vertex_terms; ++m) {
     const auto [a, M] = flow_term<E>(t.M[q], q, m);
     k.response += b.response[a] * M;
     k.following += b.following[a] * M;

@@ -71,12 +71,16 @@ FlowFacets::FlowFacets(const Mesh& mesh, int order)
         quadratic_shape(mesh.cell, place, p.N.data(), reinterpret_cast<double(*)[3]>(p.dN.data()));
       points_[f].push_back(std::move(p));
     }
-    nodes_.emplace_back(), vertices_.emplace_back();
-    for (int a = 0; a < nv_; ++a)
-      if (on_facet(f, a)) nodes_[f].push_back(a);
-    for (int a = 0; a < np_; ++a)
-      if (std::any_of(points_[f].begin(), points_[f].end(), [a](const Point& p) { return std::abs(p.M[a]) > 1e-12; }))
-        vertices_[f].push_back(a);
+    const auto not_zero = [&](const std::vector<double> Point::*functions, int count) {
+      std::vector<int> list;
+      for (int a = 0; a < count; ++a)
+        if (std::any_of(points_[f].begin(), points_[f].end(),
+                        [&](const Point& p) { return std::abs((p.*functions)[a]) > 1e-12; }))
+          list.push_back(a);
+      return list;
+    };
+    nodes_.push_back(not_zero(&Point::N, nv_));
+    vertices_.push_back(not_zero(&Point::M, np_));
   }
   FlowData data;
   data.coordinates = mesh.cell_coordinates.data();
@@ -86,8 +90,7 @@ FlowFacets::FlowFacets(const Mesh& mesh, int order)
 }
 
 bool FlowFacets::on_facet(int facet, int a) const {
-  return std::any_of(points_[facet].begin(), points_[facet].end(),
-                     [&](const Point& p) { return std::abs(p.N[a]) > 1e-12; });
+  return std::find(nodes_[facet].begin(), nodes_[facet].end(), a) != nodes_[facet].end();
 }
 
 FlowFacets::Geometry FlowFacets::geometry(const FlowData& data, int f, const Point& point) const {

@@ -29,11 +29,11 @@ void test_gradients(const V (&w)[E::NV], const FlowPoint<E, V>& at, const FlowRe
 /// functions of a linear element have alike goes to the rows behind them (flow_term).
 template <class E, class V>
 void test_values(const FlowTable& t, int q, const FlowResidual<V, E::dim>& r, V* out) {
-  for (int m = 0; m < (E::linear ? 2 : E::NV); ++m) {
+  for (int m = 0; m < E::velocity_terms; ++m) {
     const auto [a, N] = flow_term<E>(t.N[q], q, m);
     for (int i = 0; i < E::dim; ++i) out[E::velocity_row(a, i)] += r.momentum[i] * N;
   }
-  for (int m = 0; m < (E::linear ? 2 : E::NP); ++m) {
+  for (int m = 0; m < E::vertex_terms; ++m) {
     const auto [a, M] = flow_term<E>(t.M[q], q, m);
     out[E::pressure_row(a)] += r.continuity * M;
   }

@@ -9,6 +9,14 @@
 namespace silt {
 namespace {
 
+/// Whether point q is the one nearest to node q, and all other nodes count alike there, as flow_term takes it.
+bool stand_by_nodes(const FlowTable& t, int nodes) {
+  bool stand = t.points == nodes;
+  for (int q = 0; q < t.points && stand; ++q)
+    for (int a = 0; a < nodes; ++a) stand &= a == q ? t.N[q][a] > 0.5 : std::abs(t.N[q][a] - t.N[q][q == 0]) < 1e-15;
+  return stand;
+}
+
 FlowTable make_table(Cell cell, int order) {
   const bool simplex = cell == Cell::triangle || cell == Cell::tetrahedron;
   const Quadrature rule = quadrature(cell, order == 2 ? 5 : simplex ? 2 : 3);
@@ -22,12 +30,8 @@ FlowTable make_table(Cell cell, int order) {
     else
       quadratic_shape(cell, rule.point[q].data(), table.N[q], table.dN[q]);
   }
-  if (simplex && order == 1)  // as flow_term takes it
-    for (int q = 0; q < rule.points; ++q)
-      for (int a = 0; a < cell_nodes(cell); ++a)
-        if (rule.points != cell_nodes(cell) || (a == q) != (table.N[q][a] > 0.5) ||
-            (a != q && std::abs(table.N[q][a] - table.N[q][q == 0]) > 1e-15))
-          throw std::logic_error("the points of a linear element must each stand by their own node");
+  if (simplex && order == 1 && !stand_by_nodes(table, cell_nodes(cell)))
+    throw std::logic_error("the points of a linear element must each stand by their own node");
   return table;
 }
 

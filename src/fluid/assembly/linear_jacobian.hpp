@@ -1,5 +1,7 @@
 #pragma once
 // As flow_kernel.hpp: everything here depends on the lane type.
+#include <algorithm>
+
 #include "fluid/assembly/flow_batch.hpp"
 #include "fluid/equations/linearised_navier_stokes.hpp"
 
@@ -14,8 +16,9 @@ struct LinearJacobian {
   using Point = LinearisedNavierStokes<dim, V>;
 
   LinearJacobian(const FlowData& data, const FlowBatch<E, V>& batch, const V (&share)[n], V* out)
-      : b(batch), t(*data.table), at(t, b.x), w(share), matrix(out), other(t.N[0][1]), extra(t.N[0][0] - t.N[0][1]) {
+      : b(batch), t(*data.table), w(share), matrix(out), other(t.N[0][1]), extra(t.N[0][0] - t.N[0][1]) {
     at_points<E, V>(data, b, [&](int q, const FlowPoint<E, V>& here, const auto& s, const auto& k) {
+      for (int a = 0; a < n && q == 0; ++a) std::copy_n(here.gM[a], dim, gradient[a]);
       point[q] = Point(s, k, data.parameters);
       volume[q] = here.volume;
       for (int m = 0; m < n; ++m) {
@@ -43,9 +46,9 @@ struct LinearJacobian {
     V shape[n], stream[n], by_shape[n][dim][dim];
     V all_by_shape[dim][dim] = {}, by_gradient[dim] = {}, bulk[dim] = {}, viscous[dim] = {}, pressure = {};
     for (int q = 0; q < n; ++q) {
-      V gradient[dim];
-      for (int i = 0; i < dim; ++i) gradient[i] = volume[q] * at.gM[a][i];
-      const auto test = point[q].velocity_test(volume[q] * t.N[q][a], gradient);
+      V weighed[dim];
+      for (int i = 0; i < dim; ++i) weighed[i] = volume[q] * gradient[a][i];
+      const auto test = point[q].velocity_test(volume[q] * t.N[q][a], weighed);
       shape[q] = test.shape;
       stream[q] = test.stream;
       pressure += test.stream * (point[q].share + point[q].lent) + test.shape * point[q].lent;
@@ -60,7 +63,7 @@ struct LinearJacobian {
       }
     }
     for (int m = 0; m < n; ++m) {
-      const auto& g = at.gM[m];
+      const auto& g = gradient[m];
       V diagonal = dot(viscous, g);
       for (int q = 0; q < n; ++q) diagonal += shape[q] * galerkin[m][q] + stream[q] * strong[m][q];
       const V weight = w[a] * value[m];
@@ -71,7 +74,7 @@ struct LinearJacobian {
           if (i == c) sum += diagonal;
           row[E::velocity_row(m, c)] = sum;
         }
-        row[E::pressure_row(m)] = pressure * g[i] - weight * at.gM[a][i];
+        row[E::pressure_row(m)] = pressure * g[i] - weight * gradient[a][i];
       }
     }
   }
@@ -87,9 +90,9 @@ struct LinearJacobian {
     for (int a = 0; a < n; ++a) {
       V by_shape[n][dim], all_by_shape[dim] = {};
       for (int q = 0; q < n; ++q) {
-        V gradient[dim];
-        for (int i = 0; i < dim; ++i) gradient[i] = volume[q] * at.gM[a][i];
-        const auto test = point[q].pressure_test(volume[q], gradient);
+        V weighed[dim];
+        for (int i = 0; i < dim; ++i) weighed[i] = volume[q] * gradient[a][i];
+        const auto test = point[q].pressure_test(volume[q], weighed);
         for (int c = 0; c < dim; ++c) {
           by_shape[q][c] = test.by_shape[c];
           all_by_shape[c] += test.by_shape[c] * other;
@@ -98,11 +101,11 @@ struct LinearJacobian {
       V* row = matrix + E::pressure_row(a) * rows;
       const V scaled = value[a] * scale;
       for (int m = 0; m < n; ++m) {
-        const auto& g = at.gM[m];
-        const V along = dot(at.gM[a], g), carried = scaled * b.alpha[m];
+        const auto& g = gradient[m];
+        const V along = dot(gradient[a], g), carried = scaled * b.alpha[m];
         for (int c = 0; c < dim; ++c)
           row[E::velocity_row(m, c)] = carried * g[c] + all_by_shape[c] + by_shape[m][c] * extra +
-                                       at.gM[a][c] * from_strong[m] - along * smeared[c];
+                                       gradient[a][c] * from_strong[m] - along * smeared[c];
         row[E::pressure_row(m)] = along * from_pressure;
       }
     }
@@ -110,11 +113,11 @@ struct LinearJacobian {
 
   const FlowBatch<E, V>& b;
   const FlowTable& t;
-  const FlowPoint<E, V> at;
   const V (&w)[n];
   V* matrix;
   const double other, extra;  ///< a function at the points of other nodes, and what it has more at its own
   Point point[n];
+  V gradient[n][dim];                                   ///< of the functions
   V volume[n], value[n], galerkin[n][n], strong[n][n];  ///< [node][point]
 };
 
