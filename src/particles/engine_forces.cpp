@@ -83,7 +83,8 @@ void Engine::act_contacts(double dt) {
   sweep.periods = periods_;
   sweep.dt = dt;
   sweep.deepest_share = options_.overlap_limit;
-  sweep.scattered = contacts.contacts() < store.owned / 2;
+  constexpr int cached = 30000;  // particles whose records stay in a core's caches
+  sweep.scattered = contacts.contacts() < store.owned / 2 || store.owned > cached;
   sweep.leaving = contacts.leaving();
   // Contacts without a ghost are computed while ghosts are under way, unless somebody must know of new ones first.
   const int inner = contacts.first_inner();
@@ -110,8 +111,9 @@ void Engine::act_contacts(double dt) {
     sweep.pairs = contacts.pairs();
     energy_->trace(sweep);
   }
-  leaving_count_ += sweep_contacts(sweep, 0, inner);
   leaving_count_ += sweep_contacts(sweep, swept, contacts.contacts());
+  sweep.scattered = true;  // contacts with ghosts go along the ghosts
+  leaving_count_ += sweep_contacts(sweep, 0, inner);
   note_loaded();
   if (!energy_) contacts.leave(leaving_count_);
 }

@@ -62,7 +62,8 @@ struct PairSweep {
   Periods periods;
   double dt = 0;
   double deepest_share = 1;  ///< overlap allowed, as a share of the smaller radius
-  bool scattered = false;    ///< neighbours in the list are not neighbours in memory: few contacts, far apart
+  /// Both partners are to be asked for ahead: few contacts, far apart, or more particles than the caches hold.
+  bool scattered = false;
   /// out: a bit for each pair, set where it no longer touches; [(count + 7)/8], zero before
   unsigned char* leaving = nullptr;
   int leaving_count = 0;    ///< out: how many
