@@ -6,6 +6,21 @@
 #include "particles/engine.hpp"
 
 namespace silt {
+namespace {
+
+/// A sweep over contacts of either kind: what it reads of the particles, and the loads it adds to.
+template <class Sweep>
+Sweep sweep_over(Store& store, const LawSetup& laws, double dt) {
+  Sweep sweep;
+  sweep.motion = store.motion.data();
+  sweep.rotation = store.rotation.data();
+  sweep.load = store.present.data();
+  sweep.laws = laws;
+  sweep.dt = dt;
+  return sweep;
+}
+
+}  // namespace
 
 void Engine::act_fields(double time, double dt) {
   FieldStep step{store, periods_, materials, communicator_, time, dt};
@@ -42,12 +57,7 @@ void Engine::evaluate(double time, double dt) {
 
   std::fill(wall_force_sum_.begin(), wall_force_sum_.end(), 0.0);
   std::fill(wall_torque_sum_.begin(), wall_torque_sum_.end(), 0.0);
-  WallSweep walls;
-  walls.motion = store.motion.data();
-  walls.rotation = store.rotation.data();
-  walls.load = store.present.data();
-  walls.laws = setup;
-  walls.dt = dt;
+  auto walls = sweep_over<WallSweep>(store, setup, dt);
   walls.wall_force = reinterpret_cast<double(*)[3]>(wall_force_sum_.data());
   walls.wall_torque = reinterpret_cast<double(*)[3]>(wall_torque_sum_.data());
   wall_contacts.fill(walls);
@@ -75,13 +85,8 @@ void Engine::evaluate(double time, double dt) {
 
 void Engine::act_contacts(double dt) {
   const LawSetup& setup = laws_.setup();
-  PairSweep sweep;
-  sweep.motion = store.motion.data();
-  sweep.rotation = store.rotation.data();
-  sweep.load = store.present.data();
-  sweep.laws = setup;
+  auto sweep = sweep_over<PairSweep>(store, setup, dt);
   sweep.periods = periods_;
-  sweep.dt = dt;
   sweep.deepest_share = options_.overlap_limit;
   constexpr int cached = 30000;  // particles whose records stay in a core's caches
   sweep.scattered = contacts.contacts() < store.owned / 2 || store.owned > cached;
