@@ -60,8 +60,9 @@ void Budget::start(const OutputDirectory& directory, const Fluid* fluid, Particl
   }
   table_ = directory.table("ledger.csv", columns);
   if (particles) {
-    particle_momentum_ = particles->momentum();
-    particle_mass_ = particles->total_mass();
+    const Particles::Totals now = particles->totals();
+    particle_momentum_ = now.momentum;
+    particle_mass_ = now.mass;
     particles->take_impulses();
   }
 }
@@ -79,22 +80,20 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeA
   const double exchange_residual = exchange ? exchange->residual : 0;
   double particle_residual = 0, taken_residual = 0;
   Particles::Impulses in;
-  Vec3 momentum = Vec3::Zero();
-  double mass = 0;
+  Particles::Totals now;
   if (particles) {
     in = particles->take_impulses();
-    momentum = particles->momentum();
+    now = particles->totals();
     const Vec3 sum = in.gravity + in.walls + in.drag + in.fluid_force + in.kicks + in.added + in.removed + in.fields;
-    mass = particles->total_mass();
-    double scale = std::sqrt(2 * mass * particles->kinetic_energy()) + in.exchanged;
+    double scale = std::sqrt(2 * now.mass * now.kinetic) + in.exchanged;
     for (const Vec3* v :
          {&in.gravity, &in.walls, &in.drag, &in.fluid_force, &in.kicks, &in.added, &in.removed, &in.fields})
       scale += v->norm();
     scale = std::max(scale, 1e-300);
-    particle_residual = (momentum - particle_momentum_ - sum).norm() / scale;
-    const double moved = std::max({mass, particle_mass_, 1e-300});
+    particle_residual = (now.momentum - particle_momentum_ - sum).norm() / scale;
+    const double moved = std::max({now.mass, particle_mass_, 1e-300});
     particle_residual =
-        largest({particle_residual, std::abs(mass - particle_mass_ - in.added_mass + in.removed_mass) / moved});
+        largest({particle_residual, std::abs(now.mass - particle_mass_ - in.added_mass + in.removed_mass) / moved});
     // A particle that left during the step took with it what it was owed: that is in its removal.
     if (exchange && in.removed.norm() == 0)
       taken_residual =
@@ -120,7 +119,7 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeA
       const double energy = moment.fluid_step.heat, supply = moment.dt * moment.fluid_step.energy_supply;
       const double from = energy_from(exchanged), left = fluid_.known ? energy - fluid_.energy - supply - from : 0;
       row.insert(row.end(), {energy, supply, from, left, exchanged.work ? exchanged.work->in_transit : 0,
-                             particles ? particles->kinetic_energy() + particles->rotational_energy() : 0});
+                             now.kinetic + now.rotational});
       fluid_.energy = energy;
     }
     fluid_.momentum = moment.fluid_step.momentum + moment.fluid_step.lent;
@@ -128,17 +127,17 @@ double Budget::close(const Moment& moment, Particles* particles, const ExchangeA
   }
   if (with_particles_) {
     for (const Vec3& v :
-         {momentum, in.gravity, in.walls, in.drag, in.fluid_force, in.kicks, in.added, in.removed, in.fields})
+         {now.momentum, in.gravity, in.walls, in.drag, in.fluid_force, in.kicks, in.added, in.removed, in.fields})
       add(row, v);
-    row.insert(row.end(), {mass, in.added_mass, in.removed_mass});
+    row.insert(row.end(), {now.mass, in.added_mass, in.removed_mass});
   }
   if (with_fluid_ && with_particles_) {
     const ExchangeLedger none, &e = exchange ? *exchange : none;
     for (const Vec3& v : {e.drag_on_fluid, e.response_on_fluid, e.pressure_on_fluid, e.in_transit}) add(row, v);
     row.insert(row.end(), {e.particle_volume, e.deposited_volume});
   }
-  particle_momentum_ = momentum;
-  particle_mass_ = mass;
+  particle_momentum_ = now.momentum;
+  particle_mass_ = now.mass;
   table_.row(row);
   if (!(residual <= options_.tolerance))
     throw RunError(

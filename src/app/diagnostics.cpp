@@ -205,36 +205,26 @@ void Diagnostics::measure_fluid(const Moment& moment, std::vector<double>& row, 
 }
 
 void Diagnostics::measure_particles(const Particles& particles, std::vector<double>& row) const {
-  // Sums: volume, mass, mass x, mass v; then the volume by height.
-  std::vector<double> sum(8 + height_bins, 0.0);
-  double fastest = 0;
+  const Particles::Totals totals = particles.totals();
+  std::vector<double> layers(height_bins, 0.0);  // m3, volume by height
+  const double bins = height_bins / height_;
   for (int i = 0; i < particles.owned(); ++i) {
-    const double volume = particles.volume(i), mass = particles.mass(i);
-    const Vec3 x = particles.position(i), v = particles.velocity(i);
-    sum[0] += volume;
-    sum[1] += mass;
-    for (int d = 0; d < 3; ++d) {
-      sum[2 + d] += mass * x[d];
-      sum[5 + d] += mass * v[d];
-    }
-    const int bin = static_cast<int>(height_bins * (up_.dot(x) - bottom_) / height_);
-    sum[8 + std::clamp(bin, 0, height_bins - 1)] += volume;
-    fastest = std::max(fastest, v.squaredNorm());
+    const int bin = static_cast<int>(bins * (up_.dot(particles.position(i)) - bottom_));
+    layers[std::clamp(bin, 0, height_bins - 1)] += particles.volume(i);
   }
-  MPI_Allreduce(MPI_IN_PLACE, sum.data(), static_cast<int>(sum.size()), MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
-  const double mass = std::max(sum[1], 1e-300);
-  const Vec3 centre = Vec3(sum[2], sum[3], sum[4]) / mass, velocity = Vec3(sum[5], sum[6], sum[7]) / mass;
-  const double bed = sum[1] > 0 ? 2 * (up_.dot(centre) - bottom_) : 0;
+  MPI_Allreduce(MPI_IN_PLACE, layers.data(), height_bins, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  const double mass = std::max(totals.mass, 1e-300);
+  const Vec3 centre = totals.first_moment / mass, velocity = totals.momentum / mass;
+  const double bed = totals.mass > 0 ? 2 * (up_.dot(centre) - bottom_) : 0;
   double below = 0, height_95 = 0;
-  for (int k = 0; k < height_bins && below < 0.95 * sum[0]; ++k) {
-    const double share = std::min(1.0, (0.95 * sum[0] - below) / std::max(sum[8 + k], 1e-300));
+  for (int k = 0; k < height_bins && below < 0.95 * totals.volume; ++k) {
+    const double share = std::min(1.0, (0.95 * totals.volume - below) / std::max(layers[k], 1e-300));
     height_95 = height_ * (k + share) / height_bins;
-    below += sum[8 + k];
+    below += layers[k];
   }
-  const double solids = bed > 0 ? sum[0] / (mesh_.volume / height_ * bed) : 0;
-  for (double value :
-       {bed, height_95, solids, particles.kinetic_energy(), particles.rotational_energy(), std::sqrt(mpi_max(fastest)),
-        centre[0], centre[1], centre[2], velocity[0], velocity[1], velocity[2]})
+  const double solids = bed > 0 ? totals.volume / (mesh_.volume / height_ * bed) : 0;
+  for (double value : {bed, height_95, solids, totals.kinetic, totals.rotational, totals.fastest, centre[0], centre[1],
+                       centre[2], velocity[0], velocity[1], velocity[2]})
     row.push_back(value);
   const Columns& columns = particles.columns();
   for (const int c : carried_) {

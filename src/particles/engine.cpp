@@ -339,7 +339,7 @@ ParticleStep Engine::advance(double time, double dt) {
   result.substeps = substeps;
   result.rebuilds = rebuilds_;
   result.removed = removed;
-  largest_overlap(result);
+  count_contacts(result);
   return result;
 }
 

@@ -167,7 +167,8 @@ class Engine {
   /// Tells the laws the sizes of the particles. Collective.
   void take_sizes();
   std::string find_bad() const;
-  void largest_overlap(ParticleStep& step) const;
+  /// Touching pairs and walls, their deepest overlap and the fabric, of all ranks. Collective.
+  void count_contacts(ParticleStep& step) const;
 
   ParticleOptions options_;
   OwnCommunicator communicator_;

@@ -117,37 +117,25 @@ std::string Engine::find_bad() const {
   return "a particle's position is not a number";
 }
 
-void Engine::largest_overlap(ParticleStep& step) const {
-  long long touching = 0;
-  double largest = 0, fabric[4] = {};  // sums of the squared components, and the pairs
-  for (int k = 0; k < contacts.contacts(); ++k) {
-    const int i = contacts.contact_i()[k], j = contacts.contact_j()[k];
-    const Motion &a = store.motion[i], &b = store.motion[j];
-    double square = 0, squares[3];
-    for (int d = 0; d < 3; ++d) {
-      double distance = a.position[d] - b.position[d];
-      distance -= periods_.length[d] * std::nearbyint(distance * periods_.inverse[d]);
-      squares[d] = distance * distance;
-      square += squares[d];
-    }
-    const double overlap = a.radius + b.radius - std::sqrt(square);
-    // Pairs that act over a gap do not touch; a pair across ranks is counted by the owner of its first particle.
-    if (i < store.owned && overlap > 0) {
-      ++touching;
-      for (int d = 0; d < 3; ++d) fabric[d] += squares[d] / square;
-      fabric[3] += 1;
-    }
-    largest = std::max(largest, overlap / std::min(a.radius, b.radius));
-  }
+void Engine::count_contacts(ParticleStep& step) const {
+  ContactCensus census;
+  census.motion = store.motion.data();
+  census.owned = store.owned;
+  census.count = contacts.contacts();
+  census.i = contacts.contact_i(), census.j = contacts.contact_j();
+  census.periods = periods_;
+  kernels_.census(census);
+  double walls = 0;
   for (const WallPoint& point : wall_contacts.points()) {
     const double share = 1 - point.distance / store.motion[point.particle].radius;
-    touching += share > 0;
-    largest = std::max(largest, share);
+    walls += share > 0;
+    census.largest = std::max(census.largest, share);
   }
-  MPI_Allreduce(MPI_IN_PLACE, fabric, 4, MPI_DOUBLE, MPI_SUM, communicator_);
-  for (int d = 0; d < 3; ++d) step.fabric[d] = fabric[3] > 0 ? fabric[d] / fabric[3] : 0;
-  step.contacts = mpi_sum(touching);
-  step.largest_overlap = mpi_max(largest);
+  double sums[] = {census.touching, walls, census.fabric[0], census.fabric[1], census.fabric[2]};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, communicator_);
+  for (int d = 0; d < 3; ++d) step.fabric[d] = sums[0] > 0 ? sums[2 + d] / sums[0] : 0;
+  step.contacts = static_cast<long long>(sums[0] + sums[1]);
+  step.largest_overlap = mpi_max(census.largest);
 }
 
 }  // namespace silt

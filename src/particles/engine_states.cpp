@@ -73,7 +73,7 @@ ParticleStep Engine::hold(double time, double dt) {
   ParticleStep result;
   result.substeps = 1;
   result.removed = removed;
-  largest_overlap(result);
+  count_contacts(result);
   return result;
 }
 

@@ -98,31 +98,41 @@ const std::vector<std::string>& Particles::notices() const { return impl_->laws(
 std::vector<std::string> Particles::warnings() const { return impl_->warnings(); }
 const Materials& Particles::materials() const { return impl_->materials; }
 
-Vec3 Particles::momentum() const {
-  Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < owned(); ++i) sum += mass(i) * velocity(i);
-  return {mpi_sum(sum[0]), mpi_sum(sum[1]), mpi_sum(sum[2])};
+Particles::Totals Particles::totals() const {
+  const Store& store = impl_->store;
+  double sums[10] = {}, fastest = 0;
+  for (int p = 0; p < store.owned; ++p) {
+    const Motion& motion = store.motion[p];
+    const auto x = vec3(motion.position), v = vec3(motion.velocity);
+    const double mass = 1 / motion.inverse_mass, square = motion.radius * motion.radius, speed = v.squaredNorm();
+    sums[0] += mass;
+    sums[1] += square * motion.radius;
+    sums[2] += mass * speed;
+    sums[3] += mass * square * vec3(store.rotation[p].spin).squaredNorm();
+    for (int d = 0; d < 3; ++d) {
+      sums[4 + d] += mass * v[d];
+      sums[7 + d] += mass * x[d];
+    }
+    fastest = std::max(fastest, speed);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 10, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+  return {sums[0],
+          4 * std::numbers::pi / 3 * sums[1],
+          0.5 * sums[2],
+          0.2 * sums[3],
+          Vec3(sums[4], sums[5], sums[6]),
+          Vec3(sums[7], sums[8], sums[9]),
+          std::sqrt(mpi_max(fastest))};
 }
+Vec3 Particles::momentum() const { return totals().momentum; }
+double Particles::kinetic_energy() const { return totals().kinetic; }
+double Particles::rotational_energy() const { return totals().rotational; }
+double Particles::total_mass() const { return totals().mass; }
 Vec3 Particles::angular_momentum(const Vec3& origin) const {
   Vec3 sum = Vec3::Zero();
   for (int i = 0; i < owned(); ++i)
     sum += mass(i) * ((position(i) - origin).cross(Vec3(velocity(i))) + 0.4 * radius(i) * radius(i) * spin(i));
   return {mpi_sum(sum[0]), mpi_sum(sum[1]), mpi_sum(sum[2])};
-}
-double Particles::kinetic_energy() const {
-  double sum = 0;
-  for (int i = 0; i < owned(); ++i) sum += 0.5 * mass(i) * velocity(i).squaredNorm();
-  return mpi_sum(sum);
-}
-double Particles::rotational_energy() const {
-  double sum = 0;
-  for (int i = 0; i < owned(); ++i) sum += 0.2 * mass(i) * radius(i) * radius(i) * spin(i).squaredNorm();
-  return mpi_sum(sum);
-}
-double Particles::total_mass() const {
-  double sum = 0;
-  for (int i = 0; i < owned(); ++i) sum += mass(i);
-  return mpi_sum(sum);
 }
 
 double Particles::liquid_volume() const { return mpi_sum(impl_->liquid_volume()); }
@@ -153,8 +163,9 @@ bool Particles::has_energy_account() const { return impl_->energy() != nullptr; 
 
 Particles::EnergyAccount Particles::energy_account() const {
   EnergyAccount account;
-  account.kinetic = kinetic_energy();
-  account.rotational = rotational_energy();
+  const Totals now = totals();
+  account.kinetic = now.kinetic;
+  account.rotational = now.rotational;
   if (!impl_->energy()) return account;
   account.work = impl_->energy()->work();
   MPI_Allreduce(MPI_IN_PLACE, account.work.data(), EnergyAccount::mechanisms, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);

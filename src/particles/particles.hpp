@@ -162,6 +162,15 @@ class Particles {
   double kinetic_energy() const;
   double rotational_energy() const;
   double total_mass() const;
+  struct Totals {
+    double mass = 0, volume = 0;         ///< kg, m3
+    double kinetic = 0, rotational = 0;  ///< J
+    Vec3 momentum = Vec3::Zero();        ///< kg m/s
+    Vec3 first_moment = Vec3::Zero();    ///< kg m, of the mass about the origin
+    double fastest = 0;                  ///< m/s
+  };
+  /// These and more in one pass over the particles.
+  Totals totals() const;
   /// Liquid in the films of the particles and in bridges (`-bridge_type`). m3
   double liquid_volume() const;
   /// N s given to the particles by gravity, walls, fluid and applied fields since the last call; momentum change =

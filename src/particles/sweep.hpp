@@ -80,6 +80,18 @@ struct CandidateSweep {
   double* gap = nullptr;  ///< out: m, what each pair lacks to a contact, negative where it is one; padded as the pairs
 };
 
+/// How many pairs touch, how deeply and which way; each is counted by the owner of its first particle.
+struct ContactCensus {
+  const Motion* motion = nullptr;
+  int owned = 0;
+  int count = 0;  ///< padded as PairArrays
+  const int *i = nullptr, *j = nullptr;
+  Periods periods;
+  double touching = 0;           ///< out: pairs that overlap
+  double largest = 0;            ///< out: largest overlap, as a share of the smaller radius
+  double fabric[3] = {0, 0, 0};  ///< out: sums of the squared components of their normals
+};
+
 /// Which of many spheres are near one.
 struct NearSearch {
   struct Stretch {
@@ -196,6 +208,7 @@ struct Kernels {
   const char* name;
   void (*pairs)(PairSweep&);
   void (*candidates)(CandidateSweep&);
+  void (*census)(ContactCensus&);
   void (*walls)(WallSweep&);
   void (*integrate)(Integration&);
   void (*near)(NearSearch&);

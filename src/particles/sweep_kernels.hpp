@@ -266,6 +266,47 @@ SILT_INLINE void candidates(CandidateSweep& sweep) {
 }
 void candidate_sweep(CandidateSweep& sweep) { sweep.periods.any ? candidates<true>(sweep) : candidates<false>(sweep); }
 
+template <bool periodic>
+SILT_INLINE void count_pairs(ContactCensus& census) {
+  const double* motion = reinterpret_cast<const double*>(census.motion);
+  constexpr int stride = sizeof(Motion) / sizeof(double), ahead = 32;
+  const Pack none(0.0);
+  Pack touching(0.0), largest(0.0), fabric[3] = {none, none, none};
+  alignas(64) double mine[lanes];
+  for (int k = 0; k < census.count; k += lanes) {
+    const int *i = census.i + k, *j = census.j + k;
+    if (k + ahead + lanes <= census.count)
+      for (int q = 0; q < lanes; ++q) {
+        __builtin_prefetch(&census.motion[i[ahead + q]]);
+        __builtin_prefetch(&census.motion[j[ahead + q]]);
+      }
+    for (int q = 0; q < lanes; ++q) mine[q] = k + q < census.count && i[q] < census.owned;
+    Pack xi[4], xj[4], distance[3];
+    load_columns(motion, stride, 0, i, xi);
+    load_columns(motion, stride, 0, j, xj);
+    for (int d = 0; d < 3; ++d) distance[d] = xi[d] - xj[d];
+    if constexpr (periodic) nearest_image(census.periods, distance);
+    const Pack square = dot(distance, distance), overlap = xi[3] + xj[3] - sqrt(square);
+    const Pack counted = select(overlap > none, load(mine), none);  // pairs that act over a gap do not touch
+    touching = touching + counted;
+    largest = larger(largest, counted * overlap / smaller(xi[3], xj[3]));
+    for (int d = 0; d < 3; ++d) fabric[d] = fabric[d] + counted * distance[d] * distance[d] / square;
+  }
+  alignas(64) double lane[5][lanes];
+  store(lane[0], touching);
+  store(lane[1], largest);
+  for (int d = 0; d < 3; ++d) store(lane[2 + d], fabric[d]);
+  census.touching = census.largest = census.fabric[0] = census.fabric[1] = census.fabric[2] = 0;
+  for (int q = 0; q < lanes; ++q) {
+    census.touching += lane[0][q];
+    if (lane[1][q] > census.largest) census.largest = lane[1][q];
+    for (int d = 0; d < 3; ++d) census.fabric[d] += lane[2 + d][q];
+  }
+}
+void contact_census(ContactCensus& census) {
+  census.periods.any ? count_pairs<true>(census) : count_pairs<false>(census);
+}
+
 /// Contacts with walls: the same laws, filled one by one.
 void wall_sweep(WallSweep& sweep) {
   Block block;

@@ -142,3 +142,64 @@ TEST_CASE("Any normal law goes with any tangential, rolling and twisting law in 
         ++seed;
       }
 }
+
+TEST_CASE("Touching pairs, the deepest overlap and the fabric are those of the pairs looked at one at a time",
+          "[particles]") {
+  constexpr int owned = 90, ghosts = 30, pairs = 203;
+  Store store;
+  store.owned = owned;
+  store.reserve(owned + ghosts);
+  Random random(23);
+  for (int p = 0; p < owned + ghosts; ++p) {
+    Body m{};
+    m.radius = random(0.4e-3, 1.2e-3);
+    m.inverse_mass = 1e6;
+    vec3(m.position) = Vec3::Constant(2e-3) + random.vector(2e-3);
+    store.set_body(p, m);
+  }
+  store.ghosts = ghosts;
+  store.place_padding();
+  ContactLists lists(0);
+  for (int k = 0; k < pairs; ++k) {
+    const int i = static_cast<int>(random(0, owned + ghosts)), j = (i + 1 + k % 50) % (owned + ghosts);
+    lists.add_contact(i, j, nullptr, 1);
+  }
+  lists.pad(store.padding(), store.owned);
+  for (const bool periodic : {false, true}) {
+    ContactCensus census;
+    if (periodic) {
+      census.periods.any = true;
+      for (int d : {0, 2}) census.periods.length[d] = 4.5e-3, census.periods.inverse[d] = 1 / 4.5e-3;
+    }
+    int touching = 0;
+    double largest = 0;
+    Vec3 fabric = Vec3::Zero();
+    REQUIRE(lists.contacts() == pairs);
+    for (int k = 0; k < pairs; ++k) {
+      const int i = lists.contact_i()[k], j = lists.contact_j()[k];
+      const Motion &a = store.motion[i], &b = store.motion[j];
+      Vec3 apart = vec3(a.position) - vec3(b.position);
+      for (int d = 0; d < 3; ++d)
+        apart[d] -= census.periods.length[d] * std::round(apart[d] * census.periods.inverse[d]);
+      const double overlap = a.radius + b.radius - apart.norm();
+      if (i >= owned || overlap <= 0) continue;
+      ++touching;
+      largest = std::max(largest, overlap / std::min(a.radius, b.radius));
+      fabric += apart.normalized().cwiseAbs2();
+    }
+    REQUIRE(touching > 20);
+    REQUIRE(touching < pairs - 20);
+    for (const char* instructions : {"plain", "avx2", "avx512"}) {
+      if (!can_run(instructions)) continue;
+      INFO(instructions << " periodic " << periodic);
+      census.motion = store.motion.data();
+      census.owned = owned;
+      census.count = lists.contacts();
+      census.i = lists.contact_i(), census.j = lists.contact_j();
+      choose_kernels(instructions).census(census);
+      CHECK(census.touching == touching);
+      CHECK(census.largest == Approx(largest).epsilon(1e-12));
+      for (int d = 0; d < 3; ++d) CHECK(census.fabric[d] == Approx(fabric[d]).epsilon(1e-12));
+    }
+  }
+}
