@@ -175,6 +175,7 @@ Particles::EnergyAccount Particles::energy_account() const {
 
 std::vector<std::string> Particles::wall_names() const {
   std::vector<std::string> names;
+  names.reserve(impl_->walls().count());
   for (int w = 0; w < impl_->walls().count(); ++w) names.push_back(impl_->walls().name(w));
   return names;
 }
