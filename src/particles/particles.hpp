@@ -169,7 +169,7 @@ class Particles {
     Vec3 first_moment = Vec3::Zero();    ///< kg m, of the mass about the origin
     double fastest = 0;                  ///< m/s
   };
-  /// These and more in one pass over the particles.
+  /// The sums above, and more, in one pass over the particles.
   Totals totals() const;
   /// Liquid in the films of the particles and in bridges (`-bridge_type`). m3
   double liquid_volume() const;

@@ -14,6 +14,17 @@ namespace SILT_ISA {
 
 /// What the motions of `count` pairs give without a root or a division: the distance (in block.normal), the relative
 /// velocity (block.slip), both radii (block.arm_i, arm_j) and the sum of the inverse masses (block.effective_mass). The
+/// Positions and radii of the partners, and from j to i across the nearest periodic sides.
+template <bool periodic>
+SILT_INLINE void load_pairs(const double* motion, const Periods& periods, const int* i, const int* j, Pack* xi,
+                            Pack* xj, Pack* distance) {
+  constexpr int stride = sizeof(Motion) / sizeof(double);
+  load_columns(motion, stride, 0, i, xi);
+  load_columns(motion, stride, 0, j, xj);
+  for (int d = 0; d < 3; ++d) distance[d] = xi[d] - xj[d];
+  if constexpr (periodic) nearest_image(periods, distance);
+}
+
 /// long latencies have a loop of their own, which the processor can overlap over many contacts.
 template <bool periodic, bool extended>
 SILT_INLINE void gather_pairs(const PairSweep& sweep, Block& block, int first, int count) {
@@ -32,10 +43,7 @@ SILT_INLINE void gather_pairs(const PairSweep& sweep, Block& block, int first, i
         }
       }
     Pack xi[4], xj[4], vi[4], vj[4], distance[3];
-    load_columns(motion, stride, 0, i, xi);
-    load_columns(motion, stride, 0, j, xj);
-    for (int d = 0; d < 3; ++d) distance[d] = xi[d] - xj[d];
-    if constexpr (periodic) nearest_image(sweep.periods, distance);
+    load_pairs<periodic>(motion, sweep.periods, i, j, xi, xj, distance);
     load_columns(motion, stride, 4, i, vi);
     load_columns(motion, stride, 4, j, vj);
     for (int d = 0; d < 3; ++d) {
@@ -249,7 +257,6 @@ void pair_sweep(PairSweep& sweep) {
 template <bool periodic>
 SILT_INLINE void candidates(CandidateSweep& sweep) {
   const double* motion = reinterpret_cast<const double*>(sweep.motion);
-  constexpr int stride = sizeof(Motion) / sizeof(double);
   const Pack enter(sweep.enter_gap);
   constexpr int ahead = 32;
   for (int k = 0; k < sweep.count; k += lanes) {
@@ -257,10 +264,7 @@ SILT_INLINE void candidates(CandidateSweep& sweep) {
     if (k + ahead + lanes <= sweep.count)
       for (int q = 0; q < lanes; ++q) __builtin_prefetch(&sweep.motion[j[ahead + q]]);
     Pack xi[4], xj[4], distance[3];
-    load_columns(motion, stride, 0, i, xi);
-    load_columns(motion, stride, 0, j, xj);
-    for (int d = 0; d < 3; ++d) distance[d] = xi[d] - xj[d];
-    if constexpr (periodic) nearest_image(sweep.periods, distance);
+    load_pairs<periodic>(motion, sweep.periods, i, j, xi, xj, distance);
     store(&sweep.gap[k], sqrt(dot(distance, distance)) - (xi[3] + xj[3] + enter));
   }
 }
@@ -269,7 +273,7 @@ void candidate_sweep(CandidateSweep& sweep) { sweep.periods.any ? candidates<tru
 template <bool periodic>
 SILT_INLINE void count_pairs(ContactCensus& census) {
   const double* motion = reinterpret_cast<const double*>(census.motion);
-  constexpr int stride = sizeof(Motion) / sizeof(double), ahead = 32;
+  constexpr int ahead = 32;
   const Pack none(0.0);
   Pack touching(0.0), largest(0.0), fabric[3] = {none, none, none};
   alignas(64) double mine[lanes];
@@ -282,10 +286,7 @@ SILT_INLINE void count_pairs(ContactCensus& census) {
       }
     for (int q = 0; q < lanes; ++q) mine[q] = k + q < census.count && i[q] < census.owned;
     Pack xi[4], xj[4], distance[3];
-    load_columns(motion, stride, 0, i, xi);
-    load_columns(motion, stride, 0, j, xj);
-    for (int d = 0; d < 3; ++d) distance[d] = xi[d] - xj[d];
-    if constexpr (periodic) nearest_image(census.periods, distance);
+    load_pairs<periodic>(motion, census.periods, i, j, xi, xj, distance);
     const Pack square = dot(distance, distance), overlap = xi[3] + xj[3] - sqrt(square);
     const Pack counted = select(overlap > none, load(mine), none);  // pairs that act over a gap do not touch
     touching = touching + counted;
