@@ -3,8 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
+#include <random>
 
 #include "gas_box.hpp"
+#include "particles/aligned.hpp"
+#include "particles/huge_pages.hpp"
 #include "particles/packed_state.hpp"
 #include "particles/rearrange.hpp"
 #include "particles/sweep.hpp"
@@ -28,6 +31,65 @@ std::unique_ptr<BoxRun> cubic_pack(int n, double overlap) {
 }
 
 }  // namespace
+
+TEST_CASE("Arrays share regions of huge pages without touching each other, and give them back", "[particles]") {
+  HugePages pages;
+  struct Piece {
+    unsigned char* start;
+    std::size_t bytes;
+    unsigned char mark;
+  };
+  std::vector<Piece> taken;
+  std::mt19937 draw(7);
+  std::size_t shared = 0;
+  bool whole = true;
+  const auto in_region = [](std::size_t bytes) {
+    const std::size_t lines = (bytes + 63) / 64 * 64;
+    return lines >= HugePages::least && lines < HugePages::region ? lines : 0;
+  };
+  const auto give = [&](std::size_t k) {
+    const Piece piece = taken[k];
+    whole = whole && std::all_of(piece.start, piece.start + piece.bytes, [&](auto byte) { return byte == piece.mark; });
+    pages.give(piece.start, piece.bytes);
+    shared -= in_region(piece.bytes);
+    taken.erase(taken.begin() + static_cast<std::ptrdiff_t>(k));
+  };
+  for (int n = 0; n < 600; ++n) {
+    if (taken.size() > 20) give(draw() % taken.size());
+    // From a few bytes to more than a region.
+    const std::size_t bytes = n % 100 == 99 ? HugePages::region + 100 : std::size_t(1) << draw() % 23 | draw() % 5000;
+    auto* start = static_cast<unsigned char*>(pages.take(bytes));
+    REQUIRE(reinterpret_cast<std::uintptr_t>(start) % 64 == 0);
+    taken.push_back({start, bytes, static_cast<unsigned char>(n)});
+    std::fill_n(start, bytes, taken.back().mark);
+    shared += in_region(bytes);
+    REQUIRE(pages.regions() * HugePages::region == shared + pages.idle());
+  }
+  CHECK(pages.regions() > 0);
+  while (!taken.empty()) give(taken.size() - 1);
+  CHECK(whole);
+  CHECK(pages.regions() == 0);
+  pages.give(nullptr, 0);
+}
+
+TEST_CASE("An array that grows keeps its entries, and new ones are zero where others were before", "[particles]") {
+  {
+    Aligned<double> before;
+    before.reserve(100000);
+    std::fill_n(before.data(), before.capacity(), 1.0);
+  }
+  Aligned<double> array;
+  array.reserve(3);
+  for (std::size_t count = 3; count < 6000000; count *= 3) {
+    std::iota(array.data(), array.data() + array.capacity(), 1.0);
+    const std::size_t kept = array.capacity();
+    array.reserve(3 * count);
+    const double* values = array.data();
+    REQUIRE(array.capacity() >= 3 * count);
+    REQUIRE(std::reduce(values, values + kept) == 0.5 * static_cast<double>(kept) * static_cast<double>(kept + 1));
+    REQUIRE(std::all_of(values + kept, values + array.capacity(), [](double x) { return x == 0; }));
+  }
+}
 
 TEST_CASE("Spheres with six contacts take less than 600 bytes each, the last good state included", "[particles]") {
   const auto pack = cubic_pack(30, 1e-3);
