@@ -12,8 +12,6 @@
 namespace silt {
 namespace SILT_ISA {
 
-/// What the motions of `count` pairs give without a root or a division: the distance (in block.normal), the relative
-/// velocity (block.slip), both radii (block.arm_i, arm_j) and the sum of the inverse masses (block.effective_mass). The
 /// Positions and radii of the partners, and from j to i across the nearest periodic sides.
 template <bool periodic>
 SILT_INLINE void load_pairs(const double* motion, const Periods& periods, const int* i, const int* j, Pack* xi,
@@ -25,6 +23,8 @@ SILT_INLINE void load_pairs(const double* motion, const Periods& periods, const 
   if constexpr (periodic) nearest_image(periods, distance);
 }
 
+/// What the motions of `count` pairs give without a root or a division: the distance (in block.normal), the relative
+/// velocity (block.slip), both radii (block.arm_i, arm_j) and the sum of the inverse masses (block.effective_mass). The
 /// long latencies have a loop of their own, which the processor can overlap over many contacts.
 template <bool periodic, bool extended>
 SILT_INLINE void gather_pairs(const PairSweep& sweep, Block& block, int first, int count) {
