@@ -26,26 +26,24 @@ class Aligned {
     swap(other);
     return *this;
   }
-  ~Aligned() { HugePages::shared().give(data_, bytes_); }
+  ~Aligned() { HugePages::shared().give(data_, capacity_ * sizeof(T)); }
 
   void swap(Aligned& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(capacity_, other.capacity_);
-    std::swap(bytes_, other.bytes_);
   }
   /// Makes room for at least `count` entries.
   void reserve(std::size_t count) {
     if (count <= capacity_) return;
     const std::size_t grown = capacity_ + capacity_ / 8 + 64;
-    const std::size_t bytes = ((count > grown ? count : grown) * sizeof(T) + 63) / 64 * 64;
-    void* memory = HugePages::shared().take(bytes);
-    const std::size_t kept = capacity_ * sizeof(T);
+    // Whole cache lines, whatever the record.
+    const std::size_t room = ((count > grown ? count : grown) + 63) / 64 * 64, kept = capacity_ * sizeof(T);
+    void* memory = HugePages::shared().take(room * sizeof(T));
     if (kept) std::memcpy(memory, data_, kept);
-    std::memset(static_cast<char*>(memory) + kept, 0, bytes - kept);
-    HugePages::shared().give(data_, bytes_);
+    std::memset(static_cast<char*>(memory) + kept, 0, room * sizeof(T) - kept);
+    HugePages::shared().give(data_, kept);
     data_ = static_cast<T*>(memory);
-    bytes_ = bytes;
-    capacity_ = bytes / sizeof(T);
+    capacity_ = room;
   }
   std::size_t capacity() const { return capacity_; }
   T* data() { return data_; }
@@ -55,7 +53,7 @@ class Aligned {
 
  private:
   T* data_ = nullptr;
-  std::size_t capacity_ = 0, bytes_ = 0;
+  std::size_t capacity_ = 0;
 };
 
 }  // namespace silt
