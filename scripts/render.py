@@ -130,7 +130,7 @@ def look(view, box, axis, tilt):
     # Left of the middle: the colour bar stands at the right edge.
     shift = 0.11 * 2 * view.CameraParallelScale * aspect
     right = [0.0, 0.0, 0.0]
-    right[across] = 1.0 if axis in (1, 2) else -1.0
+    right[across] = 1.0
     view.CameraFocalPoint = [centre[d] + shift * right[d] for d in range(3)]
     view.CameraPosition = [view.CameraPosition[d] + shift * right[d] for d in range(3)]
 
